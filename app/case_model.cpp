@@ -113,7 +113,7 @@ OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
     const Plan& plan = the_case.plan;
     const CaseNames& names = the_case.names;
     model.case_title = names.patient.empty() ? "Case " + the_case.code : names.patient;
-    model.case_plan = names.title.empty() ? names.plan : names.title;
+    model.case_plan = names.title + (names.title.empty() || names.plan.empty() ? "" : ", ") + names.plan;
     if (model.case_plan.empty()) model.case_plan = "Plan without a name";
     if (!names.plan_version.empty()) model.case_plan += ", version " + names.plan_version;
     if (!names.series_date.empty()) model.case_plan += " \u00b7 series of " + names.series_date;

@@ -63,7 +63,8 @@ KeptMatch kept_match_of(const std::string& text, const std::filesystem::path& fi
         marker.sigma_mm = row[3].number(0, kMostSigma_mm);
         match.markers.push_back(marker);
     }
-    match.registration = registration_of_text(json.at("registration").dump(), file);
+    if (!root.find("registration")) root.refuse("has no \"registration\"");
+    match.registration = registration_of_text(json["registration"].dump(), file);
     return match;
 }
 

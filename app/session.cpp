@@ -233,11 +233,10 @@ const std::vector<Eigen::Vector3d>& Session::landmarks() {
     landmarks_ = landmarks_to_verify(skin_of_light(), rig_, registration_->patient_from_ct);
     Plan plan;
     for (std::size_t i = 0; i < landmarks_->size(); ++i) {
-        constexpr double kRing_mm = 10;
         Borehole ring;
         ring.name = fmt::format("Landmark {}", i + 1);
         ring.position_in_ct = (*landmarks_)[i];
-        ring.diameter_mm = kRing_mm;
+        ring.diameter_mm = kLandmarkRing_mm;
         plan.boreholes.push_back(ring);
     }
     DrawingSettings drawing;
@@ -326,6 +325,7 @@ void Session::watch_light(Update& update) {
         facts.segments = update.light->segments;
         facts.expected = update.light->expected;
         facts.seen = update.light->seen;
+        facts.far_mm = update.light->far_mm;
         facts.background = update.light->background;
     }
     facts.shown = shown_;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/room_kind.h"
 #include "app/session.h"
 #include "planning_io/types/error.h"
 #include "projection/light_gate.h"
@@ -31,7 +32,7 @@ enum class GateCall { step, verify, skin_checked, new_match, restart, other_ligh
 /// Where a session takes place, as far as it goes into what it does.
 struct RoomFacts {
     std::string name;
-    bool simulated = false;
+    RoomKind kind = RoomKind::real;
     MarkerDesign markers;
     RigCalibration rig;              ///< as calibrated
     std::vector<std::string> notes;  ///< of the devices, for a person

@@ -24,6 +24,7 @@ const std::map<std::string, Eigen::Vector3d> kSides{
     {"feet", {0, 0, 1}}, {"head", {0, 0, -1}}, {"left", {-1, 0, 0}}, {"right", {1, 0, 0}}, {"view", {0, 0, 0}}};
 
 const std::map<std::string, int> kThemes{{"bright", 0}, {"dark", 0}};
+const std::map<std::string, int> kPapers{{"A4", 0}, {"Letter", 0}};
 
 template <class Value>
 std::string one_of(const JsonValue& value, const std::map<std::string, Value>& known) {
@@ -71,12 +72,14 @@ SiteSettings read_site_settings() {
     const Json json = parse_json(read_whole(file), file);
     const JsonValue root(json, file);
     check_format(root, "planlight config", 1, file);
-    root.has_only(
-        {"format", "version", "units", "surgeon_side", "monitors", "language", "theme", "openigtlink", "dicom"});
+    root.has_only({"format", "version", "units", "surgeon_side", "monitors", "language", "theme", "openigtlink",
+                   "operator_name", "paper", "dicom"});
     if (const auto units = root.find("units")) site.units = one_of(*units, kUnits);
     if (const auto side = root.find("surgeon_side")) site.surgeon_side = one_of(*side, kSides);
     if (const auto language = root.find("language")) site.language = language->text();
     if (const auto theme = root.find("theme")) site.theme = one_of(*theme, kThemes);
+    if (const auto paper = root.find("paper")) site.paper = one_of(*paper, kPapers);
+    if (const auto name = root.find("operator_name")) site.operator_name = name->text();
     if (const auto monitors = root.find("monitors")) {
         monitors->has_only({"operator", "projector"});
         if (const auto name = monitors->find("operator")) site.operator_monitor = name->text();

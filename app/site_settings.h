@@ -12,8 +12,9 @@ namespace planlight {
 /// What a site sets once, in planlight/config.json under $XDG_CONFIG_HOME (~/.config where that is not set):
 /// {"format": "planlight config", "version": 1, "units": "mm" | "cm" | "inch", "surgeon_side": "feet" | "head" | "left"
 /// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"}, "language": "de", "theme": "dark" |
-/// "bright", "openigtlink": {"names": true}, "dicom": {"own_title": "PLANLIGHT", "host": "pacs", "port": 104, "title":
-/// "PACS"}}. Every name but the first two may be missing.
+/// "bright", "paper": "A4" | "Letter", "openigtlink": {"names": true}, "operator_name": "Dr. A. Meier", "dicom":
+/// {"own_title": "PLANLIGHT", "host": "pacs", "port": 104, "title": "PACS"}}. Every name but the first two may be
+/// missing.
 struct SiteSettings {
     /// Unit of the lengths that commands print for a person. Files, JSON, windows and the light stay in mm.
     std::string units = "mm";
@@ -22,6 +23,8 @@ struct SiteSettings {
     std::string surgeon_side = "feet";
     std::string language = "en";                      ///< of the operator's windows (app/words/README.md)
     std::string theme = "dark";                       ///< of the operator's windows
+    std::string paper = "A4";                         ///< size of the sheets that PDF files are made of
+    std::string operator_name;                        ///< who operates; empty: the account's. An option overrides it
     std::string operator_monitor, projector_monitor;  ///< names; empty: not set. An option of a command overrides them
     bool openigtlink_names = false;   ///< `session --igtl` says names of patient, case and plan to whoever listens
     DicomPeer archive;                ///< that `fetch` and `store` talk with; what is not set is as `DicomPeer` has it

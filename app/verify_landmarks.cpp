@@ -2,9 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "projection/render_drawing.h"
 #include "projection/stroke_places.h"
 
 namespace planlight {
@@ -13,6 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kReach_mm = 8, kSteepest = 0.9, kRim_px = 30;
+constexpr double kEnoughOfRing = 0.85;  ///< lit: a person sees then where its middle is, and the cameras measure it
 
 /// How much the skin bends outwards round a place: the mean turn of its normal, radians; negative in a hollow.
 double bend_at(const SkinSurface& skin, const SkinSurface::Point& at) {
@@ -33,6 +36,45 @@ bool well_inside(const CameraModel& device, const Vector3d& p_in_rig) {
            pixel->y() < device.height - kRim_px;
 }
 
+/// How much of the ring round a place the projector can light, or the camera that sees least of it can see.
+double share_of_ring(const SkinSurface& skin, const SkinSurface::Point& at, const RigCalibration& rig,
+                     const RigidTransform& rig_from_ct) {
+    constexpr int kPlaces = 12;
+    const std::array devices{&rig.projector, &rig.left_camera, &rig.right_camera};
+    const Vector3d a = at.normal_in_ct.unitOrthogonal(), b = at.normal_in_ct.cross(a);
+    std::array<int, devices.size()> reached{};
+    for (int k = 0; k < kPlaces; ++k) {
+        const double angle = 2 * std::numbers::pi * k / kPlaces;
+        const auto there = skin.walk(at, kLandmarkRing_mm / 2 * (std::cos(angle) * a + std::sin(angle) * b));
+        if (!there || !skin.real_skin(*there)) continue;
+        StrokePlace place;
+        place.p_in_ct = there->p_in_ct;
+        place.normal_in_ct = there->normal_in_ct;
+        for (std::size_t i = 0; i < devices.size(); ++i)
+            reached[i] += freely_seen(place, skin, *devices[i], rig_from_ct, RenderSettings{}.steepest) ? 1 : 0;
+    }
+    return static_cast<double>(*std::ranges::min_element(reached)) / kPlaces;
+}
+
+/// A place of the skin that the devices see, how far it bends outwards there, and how much of the ring can be lit and
+/// seen.
+struct Candidate {
+    double bend = 0;
+    SkinSurface::Point at;
+    double of_ring = 0;
+};
+
+/// Takes the first two of them that are far enough from each other and from what is there.
+template <typename Wanted>
+void take(std::vector<Candidate>& candidates, double apart_mm, std::vector<Vector3d>& found, const Wanted& wanted) {
+    for (Candidate& one : candidates) {
+        if (found.size() == 2) return;
+        const bool apart = std::all_of(found.begin(), found.end(),
+                                       [&](const Vector3d& q) { return (one.at.p_in_ct - q).norm() >= apart_mm; });
+        if (apart && wanted(one)) found.push_back(one.at.p_in_ct);
+    }
+}
+
 }  // namespace
 
 std::vector<Vector3d> landmarks_to_verify(const SkinSurface& skin, const RigCalibration& rig,
@@ -40,8 +82,8 @@ std::vector<Vector3d> landmarks_to_verify(const SkinSurface& skin, const RigCali
     constexpr std::size_t kLookedAt = 1500;
     const auto& vertices = skin.mesh().vertices_in_ct;
     const std::size_t step = std::max<std::size_t>(1, vertices.size() / (4 * kLookedAt));
-    std::vector<std::pair<double, Vector3d>> bends;
-    for (std::size_t i = 0; i < vertices.size() && bends.size() < kLookedAt; i += step) {
+    std::vector<Candidate> candidates;
+    for (std::size_t i = 0; i < vertices.size() && candidates.size() < kLookedAt; i += step) {
         const Vector3d p_in_rig = rig_from_ct * vertices[i];
         if (!well_inside(rig.projector, p_in_rig) || !well_inside(rig.left_camera, p_in_rig) ||
             !well_inside(rig.right_camera, p_in_rig))
@@ -54,17 +96,60 @@ std::vector<Vector3d> landmarks_to_verify(const SkinSurface& skin, const RigCali
             return freely_seen(place, skin, device, rig_from_ct, kSteepest);
         };
         if (!skin.real_skin(at) || !seen(rig.projector) || !seen(rig.left_camera) || !seen(rig.right_camera)) continue;
-        bends.emplace_back(bend_at(skin, at), at.p_in_ct);
+        candidates.push_back({bend_at(skin, at), at});
     }
-    std::sort(bends.begin(), bends.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.bend > b.bend; });
     std::vector<Vector3d> found;
-    for (const auto& [bend, p] : bends) {
-        const bool apart =
-            std::all_of(found.begin(), found.end(), [&](const Vector3d& q) { return (p - q).norm() >= apart_mm; });
-        if (apart) found.push_back(p);
-        if (found.size() == 2) break;
+    take(candidates, apart_mm, found, [&](Candidate& one) {
+        one.of_ring = share_of_ring(skin, one.at, rig, rig_from_ct);
+        return one.of_ring >= kEnoughOfRing;
+    });
+    if (found.size() < 2) {  // every place was asked: the best of what there is
+        std::stable_sort(candidates.begin(), candidates.end(),
+                         [](const auto& a, const auto& b) { return a.of_ring > b.of_ring; });
+        take(candidates, apart_mm, found, [](const Candidate&) { return true; });
     }
     return found;
+}
+
+Vector3d free_view_of(const SkinSurface& skin, const Vector3d& place_in_ct) {
+    constexpr int kWays = 400, kOfRing = 6;
+    constexpr double kFar_mm = 1000, kSame_mm = 1.5;
+    constexpr double kLowest = -0.5, kHighest = 0.9;  // radians above the horizontal
+    const SkinSurface::Point at = skin.nearest(place_in_ct);
+    const Vector3d a = at.normal_in_ct.unitOrthogonal(), b = at.normal_in_ct.cross(a);
+    std::vector<Vector3d> looked_at{at.p_in_ct};
+    for (int k = 0; k < kOfRing; ++k) {
+        const double angle = 2 * std::numbers::pi * k / kOfRing;
+        if (const auto p = skin.walk(at, kLandmarkRing_mm / 2 * (std::cos(angle) * a + std::sin(angle) * b)))
+            looked_at.push_back(p->p_in_ct);
+    }
+    const double level = std::hypot(at.normal_in_ct.x(), at.normal_in_ct.y());
+    const double elevation = std::clamp(std::atan2(at.normal_in_ct.z(), level), kLowest, kHighest);
+    const Vector3d straight = level > 1e-6
+                                  ? Vector3d(std::cos(elevation) * at.normal_in_ct.x() / level,
+                                             std::cos(elevation) * at.normal_in_ct.y() / level, std::sin(elevation))
+                                  : Vector3d(0, -std::cos(elevation), std::sin(elevation));
+    std::vector<Vector3d> ways{straight};
+    for (int i = 0; i < kWays; ++i) {  // evenly over the band, by the golden angle
+        const double z = std::sin(kLowest) + (std::sin(kHighest) - std::sin(kLowest)) * (i + 0.5) / kWays;
+        const double turn = i * std::numbers::pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
+        ways.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
+    }
+    std::stable_sort(ways.begin() + 1, ways.end(), [&](const Vector3d& u, const Vector3d& v) {
+        return u.dot(at.normal_in_ct) > v.dot(at.normal_in_ct);
+    });
+    Vector3d best = straight;
+    std::size_t most = 0;
+    for (const Vector3d& way : ways) {
+        const auto seen = static_cast<std::size_t>(std::ranges::count_if(looked_at, [&](const Vector3d& p) {
+            const auto hit = skin.first_hit({p + kFar_mm * way, -way});
+            return hit && (hit->p_in_ct - p).norm() < kSame_mm;
+        }));
+        if (seen > most) most = seen, best = way;
+        if (seen == looked_at.size()) break;
+    }
+    return best;
 }
 
 std::string words_of_place(const SkinSurface& skin, const Vector3d& place_in_ct) {

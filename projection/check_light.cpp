@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "planning_io/types/statistics.h"
+#include "projection/far_light.h"
+#include "projection/figure_patch.h"
 #include "projection/find_light.h"
 #include "projection/stroke_places.h"
 
@@ -145,13 +147,17 @@ struct LightChecker::Parts {
     std::vector<ItemLight> items;                   ///< names only
     std::vector<std::optional<StrokePlace>> apart;  ///< of each item without a segment, a place on it
     std::vector<StrokeSegment> segments;
-    std::vector<Sight> sights;
+    std::vector<FigurePatch> patches;
+    std::vector<Sight> sights;  ///< of the segments, then of the patches
     std::size_t turn = 0;
     int frame = 0;
     std::optional<RigidTransform> last;
 
     Sight sight_of(const StrokeSegment& segment, const RigidTransform& rig_from_ct) const;
     void look_around(const RigidTransform& rig_from_ct);
+    void look_at(const FigurePatch& patch, const Sight& sight, const RigidTransform& rig_from_ct,
+                 const StereoFrame& pictures, LightCheck& check) const;
+    std::optional<double> far_light(const RigidTransform& rig_from_ct, const StereoFrame& pictures) const;
 };
 
 Sight LightChecker::Parts::sight_of(const StrokeSegment& segment, const RigidTransform& rig_from_ct) const {
@@ -174,22 +180,47 @@ void LightChecker::Parts::look_around(const RigidTransform& rig_from_ct) {
         for (Sight& sight : sights) sight.known = false;
     last = rig_from_ct;
     const int parts = std::max(1, settings.look_again_every);
-    for (std::size_t i = 0; i < segments.size(); ++i)
+    for (std::size_t i = 0; i < sights.size(); ++i)
         if (!sights[i].known || static_cast<int>(i) % parts == frame % parts)
-            sights[i] = sight_of(segments[i], rig_from_ct);
+            sights[i] = sight_of(i < segments.size() ? segments[i] : patches[i - segments.size()].extent, rig_from_ct);
     ++frame;
+}
+
+/// A small figure counts as two stretches, square to each other.
+void LightChecker::Parts::look_at(const FigurePatch& patch, const Sight& sight, const RigidTransform& rig_from_ct,
+                                  const StereoFrame& pictures, LightCheck& check) const {
+    std::array<std::array<CameraLook, 2>, 2> by_camera;
+    if (sight.seen[0]) by_camera[0] = find_figure(patch, rig.left_camera, rig_from_ct, pictures.left, settings);
+    if (sight.seen[1]) by_camera[1] = find_figure(patch, rig.right_camera, rig_from_ct, pictures.right, settings);
+    for (std::size_t side = 0; side < 2; ++side) {
+        const std::array<CameraLook, 2> looks{by_camera[0][side], by_camera[1][side]};
+        if (looks[0].asked || looks[1].asked) check.segments.push_back(joined(patch.sides[side], looks, settings));
+    }
+}
+
+std::optional<double> LightChecker::Parts::far_light(const RigidTransform& rig_from_ct,
+                                                     const StereoFrame& pictures) const {
+    std::vector<SightedSegment> lit;
+    for (std::size_t i = 0; i < segments.size(); ++i)
+        if (sights[i].lit && !segments[i].tick) lit.push_back({&segments[i], sights[i].seen});
+    for (std::size_t i = 0; i < patches.size(); ++i)
+        for (const StrokeSegment& piece : patches[i].outline)
+            if (sights[segments.size() + i].lit)
+                lit.push_back({&piece, sights[segments.size() + i].seen, patches[i].small_ring});
+    return find_far_light(lit, skin, rig, rig_from_ct, pictures);
 }
 
 LightChecker::LightChecker(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,
                            const CheckLightSettings& settings, std::optional<std::size_t> only_item)
-    : parts_(new Parts{skin, rig, settings, {}, {}, segments_of(drawing, settings), {}, 0, 0, {}}) {
+    : parts_(new Parts{skin, rig, settings, {}, {}, segments_of(drawing, settings), {}, {}, 0, 0, {}}) {
+    parts_->patches = patches_of(drawing, skin, parts_->segments, settings, only_item);
     parts_->apart = places_of_items(drawing);
     if (only_item) {
         std::erase_if(parts_->segments, [&](const StrokeSegment& s) { return s.item != static_cast<int>(*only_item); });
         for (std::size_t i = 0; i < parts_->apart.size(); ++i)
             if (i != *only_item) parts_->apart[i].reset();
     }
-    parts_->sights.resize(parts_->segments.size());
+    parts_->sights.resize(parts_->segments.size() + parts_->patches.size());
     for (const StrokeSegment& segment : parts_->segments) parts_->apart[static_cast<std::size_t>(segment.item)].reset();
     for (const DrawnItem& item : drawing.items) parts_->items.emplace_back().name = item.name;
 }
@@ -208,9 +239,13 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
         if (p.sights[i].lit) check.items[static_cast<std::size_t>(p.segments[i].item)].lit = true;
     const auto segments = p.segments.size();
     const std::size_t most = std::max<std::size_t>(1, p.settings.most_segments);
-    const std::size_t step = std::max<std::size_t>(1, (segments + most - 1) / most);
-    for (std::size_t i = p.turn++ % step; i < segments; i += step) {
+    const std::size_t step = std::max<std::size_t>(1, (p.sights.size() + most - 1) / most);
+    for (std::size_t i = p.turn++ % step; i < p.sights.size(); i += step) {
         if (!p.sights[i].lit) continue;
+        if (i >= segments) {
+            p.look_at(p.patches[i - segments], p.sights[i], rig_from_ct, frame, check);
+            continue;
+        }
         const StrokeSegment& segment = p.segments[i];
         std::array<CameraLook, 2> looks;
         if (p.sights[i].seen[0]) looks[0] = find_light(segment, p.rig.left_camera, rig_from_ct, frame.left, p.settings);
@@ -220,6 +255,9 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
     }
     sum_up_items(check);
     sum_up(check);
+    constexpr double kMostSeen = 0.8, kAside_mm = 1;  // else light is where it was looked for
+    if (p.settings.far_too && check.expected > 0 && (check.seen_share() < kMostSeen || check.off_mm > kAside_mm))
+        check.far_mm = p.far_light(rig_from_ct, frame);
     return check;
 }
 

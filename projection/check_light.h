@@ -15,16 +15,18 @@
 namespace planlight {
 
 struct CheckLightSettings {
-    double spacing_mm = 0.5;       ///< between the places that are looked at along a stroke
-    double segment_mm = 5;         ///< of stroke whose profiles are averaged before light is looked for; circles: half
-    double search_mm = 3;          ///< to both sides of where the light belongs, less where another stroke is near
-    double least_search_mm = 1.2;  ///< where less is free of other strokes nothing is looked for
-    double least_peak_sigmas = 6;  ///< light stands out from the profile's noise by this
-    double least_peak_grey = 1.5;  ///< and by this
-    double least_px_per_mm = 0.5;  ///< a camera that sees the skin more obliquely or from farther is not asked
-    double steepest = 1.2;         ///< radians between the skin's normal and projector or camera
-    double place_sigma_mm = 0.1;   ///< of one segment beside its noise: texture, the skin's own shape
+    double spacing_mm = 0.5;  ///< between the places that are looked at along a stroke
+    double segment_mm =
+        5;  ///< of stroke whose profiles are averaged before light is looked for; of circles and short strokes: half
+    double search_mm = 3;             ///< to both sides of where the light belongs, less where another stroke is near
+    double least_search_mm = 1.2;     ///< where less is free of other strokes nothing is looked for
+    double least_peak_sigmas = 6;     ///< light stands out from the profile's noise by this
+    double least_peak_grey = 1.5;     ///< and by this
+    double least_px_per_mm = 0.5;     ///< a camera that sees the skin more obliquely or from farther is not asked
+    double steepest = 1.2;            ///< radians between the skin's normal and projector or camera
+    double place_sigma_mm = 0.1;      ///< of one segment beside its noise: texture, the skin's own shape
     std::size_t most_segments = 120;  ///< looked at in one frame; of more they take turns
+    bool far_too = true;              ///< light that is not where it belongs is looked for farther off (`far_mm`)
     int look_again_every = 8;         ///< frames: who sees which segment is asked anew in so many parts
 };
 
@@ -72,6 +74,9 @@ struct LightCheck {
     /// True where the segments that were seen tell the light's place in two directions along the skin. Straight lines
     /// side by side do not: along itself such light could lie anywhere.
     bool told_whole = false;
+    /// All light as one was found so far beside its place, mm, where it is beyond `search_mm` (`find_far_light`). Not
+    /// looked for while most of the light is seen near its place.
+    std::optional<double> far_mm;
     double seen_share() const { return expected == 0 ? 0 : static_cast<double>(seen) / expected; }
 };
 

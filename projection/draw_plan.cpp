@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <utility>
 
 #include "projection/check_items.h"
-#include "projection/label_names.h"
-#include "projection/place_all_labels.h"
+#include "projection/plan_drawer.h"
 #include "projection/skin_paths.h"
 
 namespace planlight {
@@ -26,7 +25,6 @@ constexpr Rgb kCutPlaneMagenta{255, 60, 255};
 constexpr double kPlaneGap_mm = 2.4;  // about each tick
 constexpr double kSymbolRadius_mm =
     3;  // of a trajectory's ring when the instrument's diameter is not given, or is smaller
-constexpr double kToldRisk_mm = 10;  // what is farther away makes labels longer and warns nobody
 
 Rgb chosen(const std::optional<Colour>& own, Rgb usual) {
     if (!own) return usual;
@@ -55,143 +53,9 @@ Point on_skin_along(const SkinSurface& skin, const Vector3d& p, const Vector3d& 
     return best ? *best : nearest;
 }
 
-class Drawer {
-public:
-    Drawer(const SkinSurface& ct_skin, const SkinSurface& skin_now, const DrawingSettings& settings,
-           std::vector<Clearances> clearances)
-        : ct_skin_(ct_skin), skin_(skin_now), settings_(settings), clearances_(std::move(clearances)) {}
+}  // namespace
 
-    void draw(const OsteotomyLine& line);
-    void draw(const Borehole& hole);
-    void draw(const Trajectory& trajectory);
-    void draw(const CutPlane& plane);
-    void name_items(const Plan& plan);
-    void draw_labels() { place_all_labels(std::move(wishes_), skin_, settings_, drawing); }
-    PlanDrawing drawing;
-
-private:
-    int begin(StrokeKind kind, const std::string& name, const Vector3d& anchor, double distance_mm,
-              std::vector<std::string> warnings);
-    bool too_far(const DrawnItem& item) const {
-        return item.distance_to_skin_mm > kTooFarFactor * settings_.max_distance_to_skin_mm;
-    }
-    DrawnItem& item(int i) { return drawing.items[static_cast<std::size_t>(i)]; }
-    void add(StrokeKind kind, int item_index, Rgb colour, double width_mm, const SkinLine& line);
-    void add_bar(StrokeKind kind, int item_index, Rgb colour, const Point& at, const Vector3d& direction,
-                 double back_mm, double ahead_mm);
-    void add_ticks(int item_index, Rgb colour, const SkinLine& line);
-    void wish(int item_index, std::vector<std::string> figures, std::vector<Point> anchors, double keep_off_mm,
-              std::optional<Vector3d> away_from = {});
-    std::optional<RiskText> risk_of(const DrawnItem& named) const;
-    void wish_along(int item_index, const std::string& figure, const SkinLine& line);
-    double planned_length_mm(const CutPlane& plane, const SkinLine& drawn) const;
-
-    const SkinSurface& ct_skin_;  ///< on which was planned
-    const SkinSurface& skin_;     ///< as it is now: what is drawn on
-    const DrawingSettings& settings_;
-    std::vector<Clearances> clearances_;  ///< in the order of the items, as all of these
-    std::vector<LitName> names_;
-    std::map<std::string, std::string> structures_;  ///< the plan's name of a risk structure, and the light's
-    std::vector<LabelWish> wishes_;
-};
-
-int Drawer::begin(StrokeKind kind, const std::string& name, const Vector3d& anchor, double distance_mm,
-                  std::vector<std::string> warnings) {
-    const LitName& lit = names_[drawing.items.size()];
-    if (!lit.warning.empty()) warnings.push_back(lit.warning);
-    drawing.items.push_back(
-        {kind, name, name, anchor, distance_mm, std::move(warnings), true, lit.name, lit.code, lit.by_code, {}, {}});
-    if (const std::size_t i = drawing.items.size() - 1; i < clearances_.size())
-        drawing.items.back().clearances = clearances_[i];
-    return static_cast<int>(drawing.items.size()) - 1;
-}
-
-void Drawer::add(StrokeKind kind, int item_index, Rgb colour, double width_mm, const SkinLine& line) {
-    if (line.points.size() < 2) return;
-    Stroke stroke{kind, item_index, colour, width_mm, line.closed, {}, {}};
-    for (const Point& p : line.points) {
-        stroke.points_in_ct.push_back(p.p_in_ct);
-        stroke.normals_in_ct.push_back(p.normal_in_ct);
-    }
-    drawing.strokes.push_back(std::move(stroke));
-}
-
-void Drawer::add_bar(StrokeKind kind, int item_index, Rgb colour, const Point& at, const Vector3d& direction,
-                     double back_mm, double ahead_mm) {
-    add(kind, item_index, colour, 0.7 * settings_.line_width_mm,
-        bar(skin_, at, direction, back_mm, ahead_mm, settings_.max_segment_mm));
-}
-
-/// A tick every 10 mm along the line from its first point, every fifth twice as long.
-void Drawer::add_ticks(int item_index, Rgb colour, const SkinLine& line) {
-    if (!(settings_.tick_every_mm > 0) || line.points.size() < 2) return;
-    const double whole_mm = length_mm(line);
-    const double last_mm = line.closed ? whole_mm - settings_.tick_length_mm : whole_mm + 1e-6;
-    for (int k = 0; k * settings_.tick_every_mm <= last_mm; ++k) {
-        const LinePlace place = place_along(skin_, line, k * settings_.tick_every_mm);
-        const double half_mm = settings_.tick_length_mm / 2 * (k % 5 == 0 ? 2 : 1);
-        add_bar(StrokeKind::tick, item_index, colour, place.at, place.at.normal_in_ct.cross(place.direction_in_ct),
-                half_mm, half_mm);
-    }
-}
-
-/// A label beside one of the anchors: the item's name, and figures with their units.
-void Drawer::wish(int item_index, std::vector<std::string> figures, std::vector<Point> anchors, double keep_off_mm,
-                  std::optional<Vector3d> away_from) {
-    DrawnItem& named = item(item_index);
-    for (std::string& figure : figures) {
-        named.label += "  " + figure;
-        // The sign is read as a digit by whoever reads quickly: 25 for ⌀5.
-        static const std::string kDiameter = "⌀";
-        if (figure.rfind(kDiameter, 0) == 0) figure = figure.substr(kDiameter.size()) + " mm wide";
-    }
-    // Figures alone would be read as those of an item without a name.
-    const bool none = names_[static_cast<std::size_t>(item_index)].none;
-    named.labelled = !none;
-    if (none || (named.lit_name.empty() && figures.empty())) return;
-    wishes_.push_back({item_index,
-                       {named.lit_name, std::move(figures), risk_of(named)},
-                       named.code,
-                       std::move(anchors),
-                       keep_off_mm,
-                       away_from,
-                       {}});
-}
-
-/// What the label says of the nearest risk structure: of ways in and holes where it is near, of what is cut where it
-/// warns.
-std::optional<RiskText> Drawer::risk_of(const DrawnItem& named) const {
-    if (named.clearances.empty()) return std::nullopt;
-    const Clearance& worst = named.clearances.front();
-    const bool cut = named.kind == StrokeKind::osteotomy_line || named.kind == StrokeKind::cut_plane;
-    if (!warns(worst) && (cut || said_mm(worst) > kToldRisk_mm)) return std::nullopt;
-    RiskText risk{worst.through ? "through" : fmt::format("{:.1f} mm to", said_mm(worst)),
-                  structures_.at(worst.structure),
-                  {},
-                  warns(worst),
-                  worst.mm};
-    if (const auto others = warnings_in(named.clearances); others > 1)
-        risk.more = fmt::format("and {} more", others - 1);
-    return risk;
-}
-
-void Drawer::wish_along(int item_index, const std::string& figure, const SkinLine& line) {
-    constexpr int kAnchors = 12;
-    std::vector<Point> anchors;
-    const double whole_mm = length_mm(line);
-    for (int k = 0; k < kAnchors; ++k) anchors.push_back(place_along(skin_, line, whole_mm * (k + 0.5) / kAnchors).at);
-    std::sort(anchors.begin(), anchors.end(), [&](const Point& a, const Point& b) {
-        return a.p_in_ct.dot(settings_.up_in_ct) > b.p_in_ct.dot(settings_.up_in_ct);
-    });
-    std::optional<Vector3d> middle;
-    if (line.closed) {
-        middle = Vector3d::Zero();
-        for (const Point& p : line.points) *middle += p.p_in_ct / static_cast<double>(line.points.size());
-    }
-    wish(item_index, {figure}, std::move(anchors), settings_.tick_length_mm, middle);
-}
-
-void Drawer::draw(const OsteotomyLine& line) {
+void PlanDrawer::draw(const OsteotomyLine& line) {
     std::vector<Point> on_ct_skin, on_skin;
     double far_mm = 0;
     if (finite(line))
@@ -211,6 +75,7 @@ void Drawer::draw(const OsteotomyLine& line) {
     const Rgb colour = chosen(line.colour, kOsteotomyGreen);
     add(StrokeKind::osteotomy_line, i, colour, settings_.line_width_mm, way);
     add_ticks(i, colour, way);
+    allow_marks_at_ends(i, colour, way);
     // The plan's own length, as every page and window has it; the skin as it is now may make it a millimetre another.
     const double planned_mm = &ct_skin_ == &skin_
                                   ? length_mm(way)
@@ -218,7 +83,7 @@ void Drawer::draw(const OsteotomyLine& line) {
     wish_along(i, fmt::format("{:.0f} mm", planned_mm), way);
 }
 
-void Drawer::draw(const Borehole& hole) {
+void PlanDrawer::draw(const Borehole& hole) {
     if (!finite(hole)) {
         begin(StrokeKind::borehole, hole.name, Vector3d::Zero(), 0, faults(hole, ct_skin_, settings_));
         return;
@@ -245,10 +110,12 @@ void Drawer::draw(const Borehole& hole) {
         radius_mm > 0 ? std::max(std::min(1.5, 0.5 * radius_mm), std::min(5.0, radius_mm - 2.5)) : 1.5;
     add_bar(StrokeKind::borehole, i, colour, at, frame.right_in_ct, arm_mm, arm_mm);
     add_bar(StrokeKind::borehole, i, colour, at, frame.up_in_ct, arm_mm, arm_mm);
+    const double clear_mm = std::max(radius_mm, arm_mm) + 2;
+    allow_marks(i, colour, at, clear_mm, clear_mm);
     wish(i, std::move(figures), {at}, std::max(radius_mm, arm_mm));
 }
 
-void Drawer::draw(const Trajectory& t) {
+void PlanDrawer::draw(const Trajectory& t) {
     if (!finite(t)) {
         begin(StrokeKind::trajectory, t.name, Vector3d::Zero(), 0, faults(t, ct_skin_, settings_));
         return;
@@ -271,6 +138,7 @@ void Drawer::draw(const Trajectory& t) {
     const TextFrame frame = text_frame(at, settings_.up_in_ct);
     add_bar(StrokeKind::trajectory, i, colour, at, frame.right_in_ct, arm_mm, arm_mm);
     add_bar(StrokeKind::trajectory, i, colour, at, frame.up_in_ct, arm_mm, arm_mm);
+    allow_marks(i, colour, at, arm_mm + 2, radius_mm + 2);
     // The shadow of the way inside, cast straight out onto the skin: it shows which way to lean the instrument.
     const Vector3d shadow = inwards - inwards.dot(at.normal_in_ct) * at.normal_in_ct;
     const double shadow_mm = std::min(20.0, shadow.norm() * t.length_mm());
@@ -280,7 +148,7 @@ void Drawer::draw(const Trajectory& t) {
     wish(i, std::move(figures), {at}, arm_mm);
 }
 
-void Drawer::draw(const CutPlane& plane) {
+void PlanDrawer::draw(const CutPlane& plane) {
     const auto warnings = faults(plane, ct_skin_, settings_);
     const bool drawable = finite(plane) && std::abs(plane.normal_in_ct.norm() - 1) < 1e-3 &&
                           std::abs(plane.first_axis_in_ct.norm() - 1) < 1e-3 &&
@@ -304,7 +172,7 @@ void Drawer::draw(const CutPlane& plane) {
 
 /// The plan's own length of a plane's trace, as every page and window has it: of that line on the CT's skin which lies
 /// nearest to the one drawn on the skin as it is now.
-double Drawer::planned_length_mm(const CutPlane& plane, const SkinLine& drawn) const {
+double PlanDrawer::planned_length_mm(const CutPlane& plane, const SkinLine& drawn) const {
     if (&ct_skin_ == &skin_) return length_mm(drawn);
     const auto apart_mm = [&](const SkinLine& line) {
         double sum_mm = 0;
@@ -325,28 +193,19 @@ double Drawer::planned_length_mm(const CutPlane& plane, const SkinLine& drawn) c
     return length_mm(planned[static_cast<std::size_t>(nearest)]);
 }
 
-/// What the light calls each item; warned of where it is not the plan's name.
-void Drawer::name_items(const Plan& plan) {
-    names_ = lit_names(names_of(plan), settings_.text_height_mm);
-    const auto lit = lit_structures(plan, settings_.text_height_mm);
-    for (std::size_t i = 0; i < lit.size(); ++i) structures_[plan.risk_structures[i].name] = lit[i].name;
-}
-
-}  // namespace
-
 PlanDrawing draw_plan(const Plan& plan, const SkinSurface& skin, const DrawingSettings& settings) {
     return draw_plan(plan, skin, skin, settings);
 }
 
 PlanDrawing draw_plan(const Plan& plan, const SkinSurface& ct_skin, const SkinSurface& skin_now,
                       const DrawingSettings& settings, std::optional<std::vector<Clearances>> known) {
-    Drawer drawer(ct_skin, skin_now, settings, known ? std::move(*known) : clearances_of(plan, &ct_skin));
+    PlanDrawer drawer(ct_skin, skin_now, settings, known ? std::move(*known) : clearances_of(plan, &ct_skin));
     drawer.name_items(plan);
     for (const auto& line : plan.osteotomy_lines) drawer.draw(line);
     for (const auto& hole : plan.boreholes) drawer.draw(hole);
     for (const auto& trajectory : plan.trajectories) drawer.draw(trajectory);
     for (const auto& plane : plan.cut_planes) drawer.draw(plane);
-    if (settings.labels) drawer.draw_labels();
+    drawer.draw_labels_and_marks();
     return std::move(drawer.drawing);
 }
 

@@ -15,7 +15,7 @@
 namespace planlight {
 
 /// What a stroke belongs to.
-enum class StrokeKind { osteotomy_line, borehole, trajectory, cut_plane, tick, label };
+enum class StrokeKind { osteotomy_line, borehole, trajectory, cut_plane, tick, label, check_mark };
 
 /// A line on the skin of constant width, measured along the skin.
 struct Stroke {
@@ -100,6 +100,7 @@ struct DrawingSettings {
     double most_text = 0.85;
     double max_distance_to_skin_mm = 10;  ///< a plan point farther from skin is warned of, by name
     bool labels = true;
+    bool check_marks = true;  ///< about items too small for the cameras to tell where their light lies
     std::vector<Eigen::Vector3d>
         keep_clear_in_ct;  ///< marker centres: labels are not put within `keep_clear_radius_mm`
     double keep_clear_radius_mm = 11;

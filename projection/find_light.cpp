@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "planning_io/types/statistics.h"
+#include "projection/bilinear.h"
 
 namespace planlight {
 namespace {
@@ -12,15 +13,6 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kStep_mm = 0.1;
-
-std::optional<double> sample(const GrayImage& picture, const Vector2d& pixel) {
-    const double x = std::floor(pixel.x()), y = std::floor(pixel.y());
-    if (x < 0 || y < 0 || x + 1 >= picture.width || y + 1 >= picture.height) return std::nullopt;
-    const int i = static_cast<int>(x), j = static_cast<int>(y);
-    const double u = pixel.x() - x, v = pixel.y() - y;
-    return (1 - v) * ((1 - u) * picture.at(i, j) + u * picture.at(i + 1, j)) +
-           v * ((1 - u) * picture.at(i, j + 1) + u * picture.at(i + 1, j + 1));
-}
 
 /// Pixels a millimetre sideways makes across the stroke in the picture; 0 where it is not seen.
 double across_px(const StrokePlace& place, const CameraModel& camera, const RigidTransform& rig_from_ct) {
@@ -49,7 +41,7 @@ std::vector<double> mean_profile(const StrokeSegment& segment, const CameraModel
         const Vector2d slope = (*last - *first) / 2, bend = (*last + *first) / 2 - *middle;
         for (int k = -half; k <= half; ++k) {
             const double share = static_cast<double>(k) / half;
-            const auto grey = sample(picture, *middle + share * slope + share * share * bend);
+            const auto grey = bilinear(picture, *middle + share * slope + share * share * bend);
             if (!grey) return {};
             profile[static_cast<std::size_t>(k + half)] += *grey / static_cast<double>(segment.places.size());
         }

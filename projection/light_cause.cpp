@@ -147,9 +147,10 @@ private:
     /// True when light is not seen, or too little of it: then nothing is said of its place.
     bool look_for_light() {
         int checks = 0, expected = 0, seen = 0;
-        std::vector<double> background;
+        std::vector<double> background, far_mm;
         for (const LightFacts& f : facts_) {
             if (f.at < now() - settings_.least || f.expected == 0) continue;
+            if (f.far_mm) far_mm.push_back(*f.far_mm);
             ++checks;
             expected += f.expected;
             seen += f.seen;
@@ -157,6 +158,10 @@ private:
         }
         if (checks < settings_.least_checks) return false;
         const double share = static_cast<double>(seen) / expected;
+        if (2 * static_cast<int>(far_mm.size()) > checks) {
+            add(LightFault::light_off, median(std::move(far_mm)), 1);
+            return true;
+        }
         if (share >= settings_.covered_share) return false;
         const double grey = median(background);
         const bool brighter = usual_background_ > 0 && grey > settings_.brighter * usual_background_ &&

@@ -38,6 +38,7 @@ struct LightFacts {
     RigidTransform rig_from_ct = RigidTransform::Identity();  ///< of the head at `at`, by the markers
     std::vector<SeenSegment> segments;                        ///< of CHECK; empty where it did not look
     int expected = 0, seen = 0;                               ///< of CHECK
+    std::optional<double> far_mm;                             ///< of CHECK
     double background = 0;                                    ///< of CHECK
     std::vector<ShownPicture> shown;                          ///< the last ones, oldest first
     /// How far the discs of the left and the right picture went together beyond even movement, mm at their depth;

@@ -39,6 +39,7 @@ void LightGate::new_match() {
 }
 
 void LightGate::restart() {
+    if (stopped_) verified_ = false;
     stopped_ = skin_off_mm_ > settings_.stop_mm;  // only a new match mends that
     forget();
 }
@@ -73,12 +74,13 @@ void LightGate::take(Instant at, const LightCheck& check) {
         items_[i].off_mm = item.off_mm;
     }
     const bool measured = check.seen >= settings_.least_seen && check.seen_share() >= settings_.least_seen_share;
-    const bool far = check.seen >= settings_.least_seen && check.most_mm > settings_.stop_mm;
+    const bool beyond_search = check.far_mm && *check.far_mm > settings_.stop_mm;
+    const bool far = beyond_search || (check.seen >= settings_.least_seen && check.most_mm > settings_.stop_mm);
     bad_ = far ? bad_ + 1 : 0;
     good_ = measured && check.off_mm <= settings_.warn_mm ? good_ + 1 : 0;
     if (bad_ < settings_.dark_after) return;
     stopped_ = true;
-    stopped_at_mm_ = check.off_mm;
+    stopped_at_mm_ = beyond_search ? *check.far_mm : check.off_mm;
 }
 
 LightGate::Ruling LightGate::step(Instant at, bool lit, const std::optional<LightCheck>& check,

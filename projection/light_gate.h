@@ -33,7 +33,8 @@ enum class LightTrust {
 /// The colour of the banner is a measurement: what CHECK saw and what a person said decide whether the light is
 /// trusted.
 ///
-/// Verified by a press, for one match; asked again after a new match and after darkness of more than `verified_for`.
+/// Verified by a press, for one match; asked again after a new match, after a stop, and after darkness of more than
+/// `verified_for`.
 /// Time is handed in.
 class LightGate {
 public:
@@ -61,8 +62,9 @@ public:
     /// A short scan found the plan's skin so far off where the markers put it, mm: beyond `stop_mm` the light stops,
     /// beyond `warn_mm` it is not trusted until the next check or match.
     void skin_checked(double off_mm);
-    void new_match();  ///< nothing is verified or measured any more
-    void restart();    ///< light is asked for again after a stop; what was verified still is
+    void new_match();  ///< or one that was found to hold still: nothing is verified or measured any more
+    /// Light is asked for again; after a stop it must be verified anew, for what a person saw then was no longer true.
+    void restart();
     /// From now on something else is lit, a landmark in place of the plan say: what was measured was of other light.
     void other_light(Instant at);
 

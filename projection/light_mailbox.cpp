@@ -13,7 +13,8 @@
 namespace planlight {
 namespace {
 
-constexpr std::size_t kMostPixels = std::size_t{3840} * 2400;
+constexpr int kMostWide = 3840, kMostHigh = 2400;
+constexpr std::size_t kMostPixels = std::size_t{kMostWide} * kMostHigh;
 constexpr std::uint32_t kFresh = 4;  ///< beside the slot's number: not taken yet
 
 struct Slot {
@@ -22,6 +23,16 @@ struct Slot {
     std::int32_t width, height;  ///< 0: darkness
     Rgb pixels[kMostPixels];
 };
+
+/// Whether a picture fits in is a matter of its pixels, not of its shape.
+void check_room(std::size_t width, std::size_t height) {
+    if (width * height > kMostPixels)
+        throw DeviceError("Projector's monitor",
+                          "its " + std::to_string(width) + "x" + std::to_string(height) +
+                              " pixels are more than can be lit: " + std::to_string(kMostWide) + "x" +
+                              std::to_string(kMostHigh) + " at most",
+                          "Set it to a smaller resolution.");
+}
 
 void keep_text(std::span<char> place, const std::string& text) {
     const std::size_t length = std::min(text.size(), place.size() - 1);
@@ -67,6 +78,7 @@ void LightMailbox::map() {
 }
 
 std::uint64_t LightMailbox::order(const RgbImage& picture, Instant valid_until) {
+    if (!picture.empty()) check_room(static_cast<std::size_t>(picture.width), static_cast<std::size_t>(picture.height));
     Slot& slot = shared_->slots[back_];
     slot.number = ++ordered_;
     slot.valid_until_ns = valid_until.count();
@@ -97,6 +109,7 @@ Instant LightMailbox::lease_until() const {
 }
 
 void LightMailbox::say_ready(int width, int height) {
+    check_room(static_cast<std::size_t>(width), static_cast<std::size_t>(height));
     shared_->width = width;
     shared_->height = height;
     shared_->state.store(static_cast<std::uint32_t>(State::ready), std::memory_order_release);

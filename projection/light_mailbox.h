@@ -32,7 +32,7 @@ public:
     // ---- the program ----
 
     /// The newest order: a picture of the monitor's size until `valid_until`; an empty picture is darkness. Gives its
-    /// number. One thread at a time.
+    /// number. One thread at a time. Throws DeviceError, with nothing written, when it has no room for the picture.
     std::uint64_t order(const RgbImage& picture, Instant valid_until);
     void renew_lease(Instant until);
 
@@ -46,6 +46,7 @@ public:
     /// True when there is an order that was not taken yet; it is the newest.
     bool take(Order& order);
     Instant lease_until() const;
+    /// Throws DeviceError when pictures of that size have no room here.
     void say_ready(int width, int height);
     void say_failed(const std::string& problem, const std::string& remedy);
     void say_done(std::uint64_t number, Instant at);

@@ -5,6 +5,8 @@
 #include <GLFW/glfw3.h>
 
 #include <chrono>
+#include <new>
+#include <stdexcept>
 
 #include "planning_io/types/error.h"
 
@@ -66,7 +68,7 @@ struct PictureThread::Painter {
         glLinkProgram(program);
         GLint linked = 0;
         glGetProgramiv(program, GL_LINK_STATUS, &linked);
-        if (linked == 0) throw failed("the graphics driver refused the picture's shader");
+        if (linked == 0) throw std::runtime_error("the graphics driver refused the picture's shader");
         glUseProgram(program);
     }
     Painter(const Painter&) = delete;
@@ -74,6 +76,7 @@ struct PictureThread::Painter {
     ~Painter() { glfwMakeContextCurrent(nullptr); }
 
     void draw(const RgbImage& picture) {
+        glfwGetError(nullptr);  // what was complained of before
         glClearColor(0, 0, 0, 1);
         glClear(GL_COLOR_BUFFER_BIT);
         if (!picture.empty()) {
@@ -85,7 +88,19 @@ struct PictureThread::Painter {
         if (error != GL_NO_ERROR) glClear(GL_COLOR_BUFFER_BIT);  // black first, then the report
         glfwSwapBuffers(window);
         glFinish();
-        if (error != GL_NO_ERROR) throw failed("the graphics driver reports error " + std::to_string(error));
+        if (error != GL_NO_ERROR)
+            throw std::runtime_error("the graphics driver reports error " + std::to_string(error));
+        const char* complaint = nullptr;
+        if (glfwGetError(&complaint) != GLFW_NO_ERROR)
+            throw std::runtime_error(std::string("its picture was not shown: ") + complaint);
+    }
+
+    /// The last that can be done once something has failed; whether it is seen nobody can tell.
+    void try_black() noexcept {
+        glClearColor(0, 0, 0, 1);
+        glClear(GL_COLOR_BUFFER_BIT);
+        glfwSwapBuffers(window);
+        glFinish();
     }
 
     GLFWwindow* window;
@@ -139,7 +154,12 @@ void PictureThread::go_dark() noexcept {
     picture_ = {};
     const std::uint64_t number = ++wanted_;
     wanted_changed_.notify_all();
-    drawn_within_a_second(lock, number);
+    if (!drawn_within_a_second(lock, number) && failure_.empty()) failure_ = "black was not drawn within a second";
+}
+
+void PictureThread::check() const {
+    const std::lock_guard lock(mutex_);
+    if (!failure_.empty()) throw failed(failure_);
 }
 
 void PictureThread::redraw() {
@@ -171,27 +191,42 @@ void PictureThread::wait_and_take(std::unique_lock<std::mutex>& lock) {
     if (!lit_) picture_ = {};
 }
 
+void PictureThread::draw_what_is_wanted(Painter& painter) {
+    std::unique_lock lock(mutex_);
+    while (true) {
+        wait_and_take(lock);
+        if (stop_) break;
+        const std::uint64_t number = wanted_;
+        const RgbImage picture = picture_;
+        lock.unlock();
+        painter.draw(picture);
+        lock.lock();
+        drawn_ = number;
+        drawn_changed_.notify_all();
+    }
+    lock.unlock();
+    painter.draw({});
+}
+
 void PictureThread::run() {
+    const auto give_up = [this](const char* why) {
+        const std::lock_guard lock(mutex_);
+        lit_ = false;
+        failure_ = why;
+        drawn_changed_.notify_all();
+    };
     try {
         Painter painter(window_, width_, height_);
-        std::unique_lock lock(mutex_);
-        while (true) {
-            wait_and_take(lock);
-            if (stop_) break;
-            const std::uint64_t number = wanted_;
-            const RgbImage picture = picture_;
-            lock.unlock();
-            painter.draw(picture);
-            lock.lock();
-            drawn_ = number;
-            drawn_changed_.notify_all();
+        try {
+            draw_what_is_wanted(painter);
+        } catch (...) {
+            painter.try_black();  // before all else: also where it failed before it drew anything
+            throw;
         }
-        lock.unlock();
-        painter.draw({});
+    } catch (const std::bad_alloc&) {
+        give_up("there is no memory for its picture");
     } catch (const std::exception& error) {
-        const std::lock_guard lock(mutex_);
-        failure_ = error.what();
-        drawn_changed_.notify_all();
+        give_up(error.what());
     }
 }
 

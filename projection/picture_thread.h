@@ -26,8 +26,11 @@ public:
     /// Returns when the picture has been handed to the display. Throws DeviceError when that fails or takes over a
     /// second.
     void show(const RgbImage& picture, Instant valid_until);
-    /// Returns when black has been handed to the display, after a second at most.
+    /// Returns when black has been handed to the display, after a second at most; `check` says whether it has been.
     void go_dark() noexcept;
+    /// Throws DeviceError when the thread could not draw what it should and has ended, or black was not drawn in time:
+    /// what the display shows is not known then.
+    void check() const;
     /// Draws again what should be seen (the window system lost it).
     void redraw();
     bool dark() const;
@@ -35,6 +38,7 @@ public:
 private:
     struct Painter;
     void run();
+    void draw_what_is_wanted(Painter& painter);
     void wait_and_take(std::unique_lock<std::mutex>& lock);
     bool drawn_within_a_second(std::unique_lock<std::mutex>& lock, std::uint64_t number);
 

@@ -97,11 +97,7 @@ private:
 void AllLabels::occupy_plan() {
     for (const Stroke& stroke : drawing_.strokes)
         for (const Vector3d& p : stroke.points_in_ct) plan_.add(p);
-    for (const Vector3d& marker : settings_.keep_clear_in_ct) {
-        const Point centre = skin_.nearest(marker);
-        for (double r = 1; r <= settings_.keep_clear_radius_mm; r += 1)
-            for (const Point& p : circle(skin_, centre, r, 1).points) plan_.add(p.p_in_ct);
-    }
+    occupy_kept_clear(skin_, settings_, plan_);
 }
 
 /// The projector stands where the whole plan can be lit: labels keep to skin that faces as the plan does on average.

@@ -205,6 +205,14 @@ bool OccupiedSkin::within(const Vector3d& p_in_ct, double distance_mm, int but_o
     return false;
 }
 
+void occupy_kept_clear(const SkinSurface& skin, const DrawingSettings& settings, OccupiedSkin& occupied) {
+    for (const Vector3d& marker : settings.keep_clear_in_ct) {
+        const SkinSurface::Point centre = skin.nearest(marker);
+        for (double r = 1; r <= settings.keep_clear_radius_mm; r += 1)
+            for (const SkinSurface::Point& p : circle(skin, centre, r, 1).points) occupied.add(p.p_in_ct);
+    }
+}
+
 namespace {
 
 template <class Visit>

@@ -38,6 +38,9 @@ private:
     std::unordered_map<std::int64_t, std::vector<Taken>> cells_;
 };
 
+/// Skin round markers (`keep_clear_in_ct`), which no light may touch.
+void occupy_kept_clear(const SkinSurface& skin, const DrawingSettings& settings, OccupiedSkin& occupied);
+
 /// A text to be put beside something.
 struct LabelWish {
     int item = -1;

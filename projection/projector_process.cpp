@@ -20,7 +20,8 @@ namespace {
 
 constexpr auto kPoll = std::chrono::milliseconds(1);
 
-/// Starts `PROGRAM projector-window --monitor M` with the two descriptors and nothing else of ours open.
+/// Starts `PROGRAM projector-window --monitor M` with the two descriptors and nothing else of ours open, in a process
+/// group of its own: Ctrl-Z in the terminal must not stop both sides at once, for nobody would be left to make it dark.
 pid_t spawn(const std::filesystem::path& program, const std::string& monitor, int bell, int mailbox) {
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
@@ -28,11 +29,16 @@ pid_t spawn(const std::filesystem::path& program, const std::string& monitor, in
     const int bell_copy = fcntl(bell, F_DUPFD_CLOEXEC, 100), mailbox_copy = fcntl(mailbox, F_DUPFD_CLOEXEC, 100);
     posix_spawn_file_actions_adddup2(&files, bell_copy, kProjectorBell);
     posix_spawn_file_actions_adddup2(&files, mailbox_copy, kProjectorMailbox);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    posix_spawnattr_setpgroup(&attributes, 0);
     const std::string executable = program.string();
     std::array<std::string, 4> words{executable, "projector-window", "--monitor", monitor};
     std::array<char*, 5> arguments{words[0].data(), words[1].data(), words[2].data(), words[3].data(), nullptr};
     pid_t process = -1;
-    const int failed = posix_spawn(&process, executable.c_str(), &files, nullptr, arguments.data(), environ);
+    const int failed = posix_spawn(&process, executable.c_str(), &files, &attributes, arguments.data(), environ);
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&files);
     close(bell_copy);
     close(mailbox_copy);

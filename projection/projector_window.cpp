@@ -200,6 +200,17 @@ struct ProjectorWindow::Parts {
                           "Connect the projector, check the monitor arrangement, and open the projector again.");
     }
 
+    /// A window whose picture nobody draws any more is taken off the screen, for it could go on to show the last one.
+    void check_picture() {
+        try {
+            picture->check();
+        } catch (const DeviceError&) {
+            glfwHideWindow(window);
+            glfwPollEvents();
+            throw;
+        }
+    }
+
     void check_place() {
         const std::string problem = misplacement();
         if (!problem.empty()) refuse(problem);
@@ -242,6 +253,7 @@ Instant ProjectorWindow::show(const RgbImage& picture, Instant valid_until) {
 
 void ProjectorWindow::refresh() {
     glfwPollEvents();
+    parts_->check_picture();
     parts_->check_place();
     if (std::exchange(parts_->damaged, false)) parts_->picture->redraw();
 }

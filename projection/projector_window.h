@@ -44,7 +44,8 @@ public:
     void go_dark() noexcept override;
 
     /// To be called often: darkens an expired picture, checks that the window still covers its monitor and nothing
-    /// else. Throws DeviceError when it does not (monitor unplugged, window moved); the window is dark and hidden then.
+    /// else, and that its picture or its darkness could be drawn. Throws DeviceError when one does not hold (monitor
+    /// unplugged, window moved, graphics driver failed); the window is dark and hidden then.
     void refresh();
     bool dark() const;
 

@@ -62,14 +62,12 @@ void follow(ProjectorWindow& window, LightMailbox& mailbox, int bell) {
     mailbox.say_ready(window.width(), window.height());
     do {
         mailbox.say_busy(clock.now());
-        if (mailbox.take(order)) {
-            if (order.picture.empty())
-                window.go_dark();
-            else
-                window.show(order.picture, order.valid_until);
-            mailbox.say_done(order.number, clock.now());
-        }
-        window.refresh();
+        const bool ordered = mailbox.take(order);
+        if (ordered && order.picture.empty()) window.go_dark();
+        if (ordered && !order.picture.empty()) window.show(order.picture, order.valid_until);
+        const Instant done_at = clock.now();
+        window.refresh();  // throws where it could not be done, also darkness: the process ends then, and its window
+        if (ordered) mailbox.say_done(order.number, done_at);
         mailbox.say_busy({});
     } while (wait_for_bell(bell));
 }
@@ -77,8 +75,8 @@ void follow(ProjectorWindow& window, LightMailbox& mailbox, int bell) {
 }  // namespace
 
 int serve_projector(const std::string& monitor, int bell, int descriptor) {
-    // Ctrl-C goes to the whole group; who decides on the end is the program.
-    for (const int signal : {SIGINT, SIGHUP}) std::signal(signal, SIG_IGN);
+    // What a terminal sends, Ctrl-C and Ctrl-Z say, is for the program; this process must never stop while it is lit.
+    for (const int signal : {SIGINT, SIGHUP, SIGTSTP, SIGTTOU, SIGTTIN}) std::signal(signal, SIG_IGN);
     setpriority(PRIO_PROCESS, 0, -10);  // where the system allows it
     LightMailbox mailbox(descriptor);
     try {

@@ -89,8 +89,9 @@ private:
     std::unordered_map<std::int64_t, std::vector<Near>> cells_;
 };
 
-/// The places of a stroke, evenly along it.
-std::vector<StrokePlace> places_of(const Stroke& stroke, double spacing_mm) {
+}  // namespace
+
+std::vector<StrokePlace> places_along(const Stroke& stroke, double spacing_mm) {
     std::vector<StrokePlace> places;
     const std::size_t n = stroke.points_in_ct.size(), segments = stroke.closed ? n : n - 1;
     constexpr double kBesideGap_mm = 0.7;  // light that ends is not the same all along the profile
@@ -115,8 +116,6 @@ std::vector<StrokePlace> places_of(const Stroke& stroke, double spacing_mm) {
     return places;
 }
 
-}  // namespace
-
 bool freely_seen(const StrokePlace& place, const SkinSurface& skin, const CameraModel& device,
                  const RigidTransform& rig_from_ct, double steepest) {
     constexpr double kOffSkin_mm = 1.5;  // the stroke may lie a little in the mesh
@@ -135,7 +134,9 @@ void add_segments(const PlanDrawing& drawing, std::size_t s, const StrokesNear& 
     const Stroke& stroke = drawing.strokes[s];
     const bool tick = stroke.kind == StrokeKind::tick;
     const double spacing_mm = tick ? settings.spacing_mm / 2 : settings.spacing_mm;
-    const double most_mm = stroke.closed ? settings.segment_mm / 2 : settings.segment_mm;
+    const std::vector<StrokePlace> places = places_along(stroke, spacing_mm);
+    const bool small = stroke.closed || static_cast<double>(places.size()) * spacing_mm < 3 * settings.segment_mm;
+    const double most_mm = small ? settings.segment_mm / 2 : settings.segment_mm;
     const auto most = static_cast<std::size_t>(std::max(1.0, most_mm / settings.spacing_mm));
     const StrokeSegment none{stroke.item, tick, {}, settings.search_mm};
     StrokeSegment segment = none;
@@ -143,7 +144,7 @@ void add_segments(const PlanDrawing& drawing, std::size_t s, const StrokesNear& 
         if (segment.places.size() >= least) segments.push_back(segment);
         segment = none;
     };
-    for (const StrokePlace& place : places_of(stroke, spacing_mm)) {
+    for (const StrokePlace& place : places) {
         const double free_mm = place.lit ? near.free_mm(s, place) : 0;
         if (free_mm < settings.least_search_mm) {
             if (!tick) close((most + 1) / 2);
@@ -163,9 +164,9 @@ std::vector<std::optional<StrokePlace>> places_of_items(const PlanDrawing& drawi
     std::vector<std::optional<StrokePlace>> places(drawing.items.size());
     std::vector<std::size_t> longest(drawing.items.size(), 0);
     for (const Stroke& stroke : drawing.strokes) {
-        if (stroke.kind == StrokeKind::label || stroke.item < 0) continue;
+        if (stroke.kind == StrokeKind::label || stroke.kind == StrokeKind::check_mark || stroke.item < 0) continue;
         const auto item = static_cast<std::size_t>(stroke.item);
-        const std::vector<StrokePlace> all = places_of(stroke, 0.5);
+        const std::vector<StrokePlace> all = places_along(stroke, 0.5);
         if (all.size() <= longest[item]) continue;
         longest[item] = all.size();
         places[item] = all[all.size() / 2];

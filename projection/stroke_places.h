@@ -22,12 +22,17 @@ struct StrokeSegment {
     const StrokePlace& middle() const { return places[places.size() / 2]; }
 };
 
-/// The drawing's strokes, labels aside, cut into segments of about `segment_mm` (circles half of it). Left out: what
-/// lies so near another stroke or label that its light could be mistaken. Of a tick only what lies beside its line, and
-/// only where that line goes on to both sides: its light is then the same all along the profile.
+/// The drawing's strokes, labels aside, cut into segments of about `segment_mm` (of circles and of strokes under three
+/// of them half of it). Left out: what lies so near another stroke or label that its light could be mistaken. Of a tick
+/// only what lies beside its line, and only where that line goes on to both sides: its light is then the same all along
+/// the profile.
 std::vector<StrokeSegment> segments_of(const PlanDrawing& drawing, const CheckLightSettings& settings);
 
-/// A place on each item of the drawing, on the middle of its longest stroke that is no label; empty for items without.
+/// The places of a stroke, evenly along it.
+std::vector<StrokePlace> places_along(const Stroke& stroke, double spacing_mm);
+
+/// A place on each item of the drawing, on the middle of its longest stroke that is no label and no mark; empty for
+/// items without.
 std::vector<std::optional<StrokePlace>> places_of_items(const PlanDrawing& drawing);
 
 /// True when a device sees the place: in its picture, not too steep, no skin before it.

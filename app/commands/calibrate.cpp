@@ -7,6 +7,8 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/device_check.h"
+#include "app/commands/language_option.h"
+#include "app/commands/pdf_option.h"
 #include "app/console.h"
 #include "app/report/calibration_report.h"
 #include "planning_io/case/board_captures.h"
@@ -96,6 +98,8 @@ Observed observe_captures(const CalibrateOptions& options, const BoardSpec& boar
 }
 
 int run_calibrate(const CalibrateOptions& options) {
+    const CalibrationFiles files = calibration_files(options.out);
+    check_pdf(options.pdf);
     if (options.live) return run_calibrate_live(options);
     const BoardSpec board = parse_board(options.board);
     check_can_write(options.out);  // before minutes of work, not after
@@ -113,21 +117,32 @@ int run_calibrate(const CalibrateOptions& options) {
         write_rig(rig, options.out);
         report.rig_file = options.out;
     }
-    Path stem = options.out;
-    stem.replace_extension();
-    const Path html = Path(stem) += "-calibration.html", json = Path(stem) += "-calibration.json";
-    write_calibration_html(report, html);
-    const std::string text = calibration_json(report);
-    write_safely(json, text);
+    const std::string text = write_calibration(report, options.out, options.pdf);
     for (const std::string& warning : calibration.warnings) warn(warning);
     if (options.json)
         std::cout << text;
     else
-        fmt::print("{}{} and {}.\n", calibration_summary(report), html.string(), json.string());
+        fmt::print("{}{} and {}.\n", calibration_summary(report), files.page.string(), files.figures.string());
     return 0;
 }
 
 }  // namespace
+
+CalibrationFiles calibration_files(const Path& rig) {
+    Path stem = rig;
+    stem.replace_extension();
+    return {Path(stem) += "-calibration.html", Path(stem) += "-calibration.json"};
+}
+
+std::string write_calibration(const CalibrationReport& report, const Path& rig, const Path& pdf) {
+    const CalibrationFiles files = calibration_files(rig);
+    const Document document = calibration_document(report);
+    const std::string figures = calibration_json(report);
+    write_safely(files.page, html_of(document));
+    write_safely(files.figures, figures);
+    write_pdf(document, pdf);
+    return figures;
+}
 
 std::optional<RigCalibration> previous_rig(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file)) return std::nullopt;
@@ -157,9 +172,9 @@ void keep_previous_rig(const Path& file) {
 Run add_calibrate(CLI::App& app) {
     const auto options = std::make_shared<CalibrateOptions>();
     CalibrateOptions& o = *options;
-    auto* sub = add_command(app, "calibrate",
-                            "A board under coded light, captured or in your hands -> rig.json, or a refusal (exit 6)",
-                            "calibrate captures --board \"charuco 10x7 25 mm\" --out rig.json");
+    auto* sub = add_command(
+        app, "calibrate", "A board under coded light, captured or in your hands -> rig.json, or a refusal (exit 6)",
+        "calibrate captures --board \"charuco 10x7 25 mm\" --out rig.json --pdf rig-calibration.pdf");
     auto* captures = sub->add_option("captures", o.captures, "Folder with one folder a pose");
     sub->add_option("--board", o.board,
                     "The board, its square as measured: \"charuco 10x7 24.98 mm\" or \"chessboard 9x6 25 mm\"")
@@ -170,6 +185,7 @@ Run add_calibrate(CLI::App& app) {
     sub->add_option("--serial-projector", o.serial_projector,
                     "Of the projector; `projector --identify` tells it where the monitor does");
     sub->add_option("--out", o.out, "rig.json to write; the report stands beside it")->capture_default_str();
+    pdf_option(sub, o.pdf);
     json_flag(sub, o.json);
     auto* live = sub->add_flag(
         "--live", o.live,
@@ -191,8 +207,10 @@ Run add_calibrate(CLI::App& app) {
     sub->add_flag("--headless", o.headless, "Of --live: in words on the terminal, without a window");
     sub->add_option("--operator", o.operator_monitor, "Of --live: monitor of the window (default: the primary one)");
     sub->add_option("--screenshots", o.screenshots, "Of --live: folder for pictures of the window");
+    language_option(sub, o.language);
+    theme_option(sub, o.theme);
     for (const char* name : {"--room", "--keep", "--keep-captures", "--most-poses", "--good-enough-mm", "--headless",
-                             "--operator", "--screenshots"})
+                             "--operator", "--screenshots", "--language", "--theme"})
         sub->get_option(name)->needs(live);
     sub->parse_complete_callback([live, captures] {
         if (live->count() == 0 && captures->count() == 0)

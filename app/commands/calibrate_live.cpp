@@ -84,12 +84,12 @@ public:
         : calibration_(calibration), subtitle_(std::move(subtitle)), screenshots_(options.screenshots) {
         note_end_signals();
         if (options.headless) return;
-        WindowSettings settings;
-        settings.title = "Planlight calibration";
         const SiteSettings site = read_site_settings();
-        settings.words = words_of_window({}, site);
-        settings.theme = site.theme == "bright" ? ThemeKind::bright : ThemeKind::dark;
-        if (!options.operator_monitor.empty()) settings.monitor = options.operator_monitor;
+        WindowSettings settings = settings_of_window(options.language, options.theme, site);
+        settings.title = "Planlight calibration";
+        const std::string& monitor =
+            options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
+        if (!monitor.empty()) settings.monitor = monitor;
         window_ = std::make_unique<GuideWindow>(settings);
         if (!screenshots_.empty()) make_folder(screenshots_);
     }
@@ -254,12 +254,7 @@ int finish(const CalibrateOptions& options, const GuidedCalibration& guided, con
         for (const std::string& sentence : sentences_of(report)) fmt::print("{}\n", sentence);
     const path written = write_as_decided(rig, options, decide(options, sentences_of(report), screen));
     report.rig_file = written;
-    if (!written.empty()) {
-        path stem = written;
-        stem.replace_extension();
-        write_calibration_html(report, path(stem) += "-calibration.html");
-        write_safely(path(stem) += "-calibration.json", calibration_json(report));
-    }
+    if (!written.empty()) write_calibration(report, written, options.pdf);
     if (options.json)
         std::cout << json_line(Json{{"event", "result"},
                                     {"rig", written.string()},

@@ -107,11 +107,8 @@ int say_once(const CamerasOptions& options, CameraWatch& watch, TestLight* light
 
 WindowSettings window_settings(const CamerasOptions& options) {
     const SiteSettings site = read_site_settings();
-    WindowSettings settings;
+    WindowSettings settings = settings_of_window(options.language, options.theme, site);
     settings.title = "Planlight cameras";
-    settings.words = words_of_window(options.language, site);
-    settings.theme =
-        (options.theme.empty() ? site.theme : options.theme) == "bright" ? ThemeKind::bright : ThemeKind::dark;
     const std::string& monitor = options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
     if (!monitor.empty()) settings.monitor = monitor;
     return settings;
@@ -204,8 +201,7 @@ Run add_cameras(CLI::App& app) {
         ->capture_default_str();
     sub->add_option("--operator", o.operator_monitor, "Monitor of the window (default: the primary one)");
     language_option(sub, o.language);
-    sub->add_option("--theme", o.theme, "Colours of the window: dark or bright (default: the site's, else dark)")
-        ->check(CLI::IsMember({"dark", "bright"}));
+    theme_option(sub, o.theme);
     sub->add_option("--screenshot", o.screenshot, "Write a picture of the window after --seconds, and end")
         ->check(png_file());
     sub->add_flag("--json", o.json, "Without a window: print the figures once as JSON on standard output");

@@ -5,6 +5,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/example_plan.h"
+#include "app/commands/pdf_option.h"
 #include "app/commands/plan_options.h"
 #include "app/console.h"
 #include "app/evaluation/chain_pictures.h"
@@ -13,6 +14,7 @@
 #include "app/live/live_window.h"
 #include "app/live/simulated_room.h"
 #include "planning_io/files/make_folder.h"
+#include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
@@ -22,7 +24,7 @@ namespace {
 
 struct DemoOptions {
     Path volume = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3";
-    Path plan, out = "planlight-demo";
+    Path plan, out = "planlight-demo", pdf;
     std::string series_uid, frame, accept_frame;  ///< of the volume; of a plan that does not say its coordinate system
     std::string preset = "both";
     unsigned seed = 1;
@@ -38,6 +40,7 @@ std::vector<simulation::Preset> presets_of(const DemoOptions& options) {
 }
 
 int run_demo(const DemoOptions& options) {
+    check_pdf(options.pdf, options.out);
     if (!std::filesystem::exists(options.volume))
         throw InputError(options.volume, "the patient is not there",
                          "Install the package invesalius-examples, or give --volume.");
@@ -81,7 +84,9 @@ int run_demo(const DemoOptions& options) {
     };
     const auto rooms = run_rooms(volume, prepared.prepared, drawing, settings, options.jobs, watcher_of, finished);
     const std::string json = write_report_json(options.out / "report.json", prepared, rooms);
-    write_report_html(options.out / "report.html", prepared, rooms, pictures.pictures());
+    const Document document = chain_document(prepared, rooms, pictures.pictures());
+    write_safely(options.out / "report.html", html_of(document));
+    write_pdf(document, options.pdf);
     if (options.json) std::cout << json;
     for (const auto* preset : {"paper", "modern"})
         if (const auto s = summarise(rooms, preset); s.rooms > 0 && !options.json) fmt::print("{}", summary_text(s));
@@ -109,7 +114,7 @@ Run add_demo(CLI::App& app) {
     DemoOptions& o = *options;
     auto* sub =
         add_command(app, "demo", "The whole chain on the example patient, with a report of how true the light was",
-                    "demo --headless --seed 3 --out demo-3");
+                    "demo --headless --seed 3 --out demo-3 --pdf demo-3/report.pdf");
     sub->add_option("--volume", o.volume, "Patient")->capture_default_str();
     series_option(sub, o.series_uid);
     sub->add_option("--plan", o.plan, "Plan (default: the example plan)");
@@ -125,6 +130,7 @@ Run add_demo(CLI::App& app) {
     sub->add_flag("--headless", o.headless, "No windows, even where there is a display");
     sub->add_flag("--no-pictures", o.no_pictures, "No pictures in the report (a machine without OpenGL)");
     sub->add_option("--out", o.out, "Folder of report.html and report.json")->capture_default_str();
+    pdf_option(sub, o.pdf);
     json_flag(sub, o.json);
     return [options] { return run_demo(*options); };
 }

@@ -123,7 +123,8 @@ Run add_export(CLI::App& app) {
                     "New folder for DICOM objects of that study: Spatial Registration, Encapsulated PDF (the report of "
                     "a recording), Secondary Capture (pictures)")
         ->needs(volume);
-    sub->add_option("--slicer", o.slicer, "New folder for 3D Slicer: skin, plan, scan, transform and light");
+    sub->add_option("--slicer", o.slicer,
+                    "New folder for 3D Slicer: skin, plan, scan, transform, and the plan as lines on the skin");
     json_flag(sub, o.json);
     return [options] { return run_export(*options); };
 }

@@ -3,6 +3,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/review_recording.h"
+#include "app/live/shown_review.h"
 #include "app/recording/replay_session.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/types/error.h"
@@ -21,6 +22,12 @@ std::vector<std::string> left_of(const Path& recording, const Path& case_folder)
             left.push_back(report.string() + " (its report)");
     if (const Path review = review_folder_of(recording); fs::exists(review, ignored))
         left.push_back(review.string() + " (its review: pictures that show the face)");
+    const Path stem = Path(recording).replace_extension("");
+    std::error_code unknown;
+    for (fs::directory_iterator entry(stem.parent_path().empty() ? Path(".") : stem.parent_path(), unknown), end;
+         !unknown && entry != end; entry.increment(unknown))
+        if (entry->path().filename().string().starts_with(stem.filename().string() + kSnapshotAt))
+            left.push_back((stem.parent_path() / entry->path().filename()).string() + " (a picture of its review)");
     if (case_folder.empty()) return left;
     if (const Path matches = case_folder / kRegistrationsFolder; fs::exists(matches, ignored))
         left.push_back(matches.string() + " (matches with scans of the skin, of all sessions)");

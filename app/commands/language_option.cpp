@@ -35,4 +35,15 @@ std::shared_ptr<const Words> words_of_window(const std::string& option, const Si
     }
 }
 
+ThemeKind theme_of_window(const std::string& option, const SiteSettings& site) {
+    return (option.empty() ? site.theme : option) == "bright" ? ThemeKind::bright : ThemeKind::dark;
+}
+
+WindowSettings settings_of_window(const std::string& language, const std::string& theme, const SiteSettings& site) {
+    WindowSettings settings;
+    settings.words = words_of_window(language, site);
+    settings.theme = theme_of_window(theme, site);
+    return settings;
+}
+
 }  // namespace planlight

@@ -42,8 +42,9 @@ bool same(const fs::path& a, const fs::path& b) {
 
 /// What the folders that Planlight writes are made of.
 bool is_own_file_of(const fs::path& file, const fs::path& folder) {
-    static constexpr std::array kOwn{"case.json",   "checksums.xxh128", "plan.mrk.json", "skin.lut",    "skin.ply",
-                                     "report.html", "report.json",      "capture.json",  "frames.json", "light.json"};
+    static constexpr std::array kOwn{"case.json",    "checksums.xxh128", "plan.mrk.json", "skin.lut",
+                                     "skin.ply",     "report.html",      "report.pdf",    "report.json",
+                                     "capture.json", "frames.json",      "light.json"};
     std::error_code error;
     const std::string name = file.filename().string();
     if (!fs::is_directory(folder, error) || !fs::exists(file, error)) return false;

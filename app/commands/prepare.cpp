@@ -7,6 +7,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/language_option.h"
+#include "app/commands/pdf_option.h"
 #include "app/commands/plan_options.h"
 #include "app/console.h"
 #include "app/live/live_window.h"
@@ -22,7 +23,7 @@ namespace planlight {
 namespace {
 
 struct PrepareOptions {
-    Path volume, plan, out;
+    Path volume, plan, out, pdf;
     std::vector<Path> risk;  ///< files of risk structures
     std::string series_uid;
     std::string frame, accept_frame;  ///< of a plan that does not say its coordinate system; a DICOM frame of reference
@@ -123,6 +124,7 @@ void print_summary(const Preparation& done, const PrepareOptions& options) {
 int run_prepare(const PrepareOptions& options) {
     check_case_names(options.names);
     check_case_place(options.out, options.replace);
+    check_pdf(options.pdf, options.out);
     ProgressBar bar;
     bar.show("volume", 0);
     Inputs in = read_inputs(options);
@@ -130,8 +132,12 @@ int run_prepare(const PrepareOptions& options) {
     Preparation done = prepare(in, options, bar);
     const PreparationReport report = report_of(in, done, bar);
     bar.show("case folder", 0);
-    write_case(done.prepared, options.out, options.replace,
-               [&](const Path& into) { write_preparation_report(report, into); });
+    const bool in_the_case = !options.pdf.empty() && stands_in(options.pdf, options.out);  // and so a file of its own
+    write_case(done.prepared, options.out, options.replace, [&](const Path& into) {
+        write_preparation_report(report, into);
+        if (in_the_case) write_pdf(report.document, into / options.pdf.filename());
+    });
+    if (!in_the_case) write_pdf(report.document, options.pdf);
     bar.show("case folder", 1);
     if (options.json)
         std::cout << report.json;
@@ -139,7 +145,7 @@ int run_prepare(const PrepareOptions& options) {
         print_summary(done, options);
     if (options.preview)
         show_model(model_of_case(done.prepared, CaseDrawing(done.prepared)), FitView::after,
-                   words_of_window({}, read_site_settings()));
+                   settings_of_window({}, {}, read_site_settings()));
     return 0;
 }
 
@@ -148,8 +154,10 @@ int run_prepare(const PrepareOptions& options) {
 Run add_prepare(CLI::App& app) {
     const auto options = std::make_shared<PrepareOptions>();
     PrepareOptions& o = *options;
-    auto* sub = add_command(app, "prepare", "CT or MR volume and plan -> case folder (skin, LUT, plan, checksums)",
-                            "prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case");
+    auto* sub =
+        add_command(app, "prepare", "CT or MR volume and plan -> case folder (skin, LUT, plan, checksums)",
+                    "prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case\n"
+                    "  planlight prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case --pdf case/report.pdf");
     sub->add_option("volume", o.volume,
                     "DICOM folder or file, NIfTI, FreeSurfer MGZ, NRRD, MetaImage, or InVesalius project (.inv3)")
         ->required();
@@ -182,6 +190,7 @@ Run add_prepare(CLI::App& app) {
         ->check(CLI::Range(0.25, 10.0));
     sub->add_flag("--replace", o.replace, "Replace an existing case folder");
     sub->add_flag("--preview", o.preview, "Open the operator window on the result");
+    pdf_option(sub, o.pdf);
     json_flag(sub, o.json);
     return [options] { return run_prepare(*options); };
 }

@@ -7,6 +7,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/pdf_option.h"
 #include "app/console.h"
 #include "app/live/identify_monitors.h"
 #include "app/live/light_source.h"
@@ -132,6 +133,8 @@ int run_projector(const ProjectorOptions& options) {
     if (options.recording.empty() && options.simulate.empty() && options.room.empty())
         throw InputError({}, "there is nothing to measure",
                          "Give --room, a folder of recorded light, --simulate, --show or --identify.");
+    const Path page = options.out.empty() ? Path() : Path(options.out).replace_extension(".html");
+    check_pdf(options.pdf);
     ProjectorReport report;
     report.made_on = today();
     report.serial = options.serial;
@@ -152,11 +155,15 @@ int run_projector(const ProjectorOptions& options) {
     throw_if_refused(report.latency, "latency");
     throw_if_refused(report.response, "response");
     throw_if_refused(report.cycle, "colour cycle");
-    if (options.out.empty()) return 0;
-    Path page = options.out;
-    page.replace_extension(".html");
+    if (options.out.empty() && options.pdf.empty()) return 0;
+    const Document document = projector_document(report);
+    if (options.out.empty()) {
+        write_pdf(document, options.pdf);
+        return 0;
+    }
     write_safely(options.out, text);
-    write_projector_html(report, page);
+    write_safely(page, html_of(document));
+    write_pdf(document, options.pdf);
     if (!options.json) fmt::print("{} and {}.\n", options.out.string(), page.string());
     return 0;
 }
@@ -168,7 +175,7 @@ Run add_projector(CLI::App& app) {
     ProjectorOptions& o = *options;
     auto* sub = add_command(
         app, "projector", "What the projector really does: gamma, colour cycle, latency; which monitor it is",
-        "projector --room room.json --out projector.json\n"
+        "projector --room room.json --out projector.json --pdf projector.pdf\n"
         "  planlight projector recording --configured-ms 25 --serial X7K2 --out projector.json\n"
         "  planlight projector --simulate paper --seed 3 --light wheel-hz=120 delay-ms=12 --out projector.json\n"
         "  planlight projector --identify\n"
@@ -225,6 +232,8 @@ Run add_projector(CLI::App& app) {
         ->check(CLI::Range(0.0, 60.0))
         ->needs(identify);
     sub->add_option("--out", o.out, "projector.json to write; the page stands beside it");
+    pdf_option(sub, o.pdf);
+    sub->get_option("--pdf")->excludes(show)->excludes(identify);
     json_flag(sub, o.json);
     return [options] { return run_projector(*options); };
 }

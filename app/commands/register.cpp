@@ -9,6 +9,7 @@
 #include "app/commands/cloud_unit.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/pdf_option.h"
 #include "app/commands/rig_words.h"
 #include "app/json_text.h"
 #include "app/report/registration_certificate.h"
@@ -18,6 +19,7 @@
 #include "planning_io/case/registration_file.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/case/slicer_transform.h"
+#include "planning_io/files/safe_write.h"
 #include "planning_io/plan/point_pairs_file.h"
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
@@ -32,7 +34,7 @@ struct RegisterOptions {
     Path case_folder, cloud, out;
     Path pairs;             ///< landmarks: a check of the cloud's match, or, without a cloud, the match
     Path slicer_transform;  ///< to write; empty: not wanted
-    Path certificate;       ///< page to write; empty: not wanted
+    Path certificate, pdf;  ///< page to write, and as PDF; empty: not wanted
     std::string unit = "mm";
     bool in_rig = false;
     std::vector<double> viewpoint_in_rig;  ///< 3 numbers, mm; empty: not said
@@ -98,7 +100,17 @@ RegistrationResult match(const RegisterOptions& options, const Case& the_case, s
     return register_with_landmarks(*cloud, the_case.lut, pairs, settings);
 }
 
+void write_certificate(const RegisterOptions& options, const Case& the_case, const CaseDrawing& drawing,
+                       const RegistrationResult& result, const std::shared_ptr<const PointCloud>& cloud) {
+    if (options.certificate.empty() && options.pdf.empty()) return;
+    const Document document = certificate_of(the_case, drawing, result, cloud);
+    // The face is on it.
+    if (!options.certificate.empty()) write_safely(options.certificate, html_of(document), ReadableBy::owner);
+    write_pdf(document, options.pdf, ReadableBy::owner);
+}
+
 int run_register(const RegisterOptions& options) {
+    check_pdf(options.pdf);
     const Case the_case = read_case(options.case_folder);
     std::shared_ptr<const PointCloud> cloud;
     std::optional<RigState> rig;
@@ -108,7 +120,7 @@ int run_register(const RegisterOptions& options) {
     if (!options.slicer_transform.empty() && result.verdict != Verdict::no)
         write_slicer_transform(result.patient_from_ct, options.slicer_transform);
     const CaseDrawing drawing(the_case);
-    if (!options.certificate.empty()) write_certificate_html(the_case, drawing, result, cloud, options.certificate);
+    write_certificate(options, the_case, drawing, result, cloud);
     const std::vector<double> predicted =
         result.verdict == Verdict::no ? std::vector<double>{} : predicted_errors_mm(the_case.plan, result);
     nlohmann::json items = nlohmann::json::array();
@@ -177,8 +189,10 @@ int run_register(const RegisterOptions& options) {
 Run add_register(CLI::App& app) {
     const auto options = std::make_shared<RegisterOptions>();
     RegisterOptions& o = *options;
-    auto* sub = add_command(app, "register", "Cloud and case -> where the patient lies (T_ini), or a refusal (exit 6)",
-                            "register case --cloud cloud.ply --out registration.json");
+    auto* sub =
+        add_command(app, "register", "Cloud and case -> where the patient lies (T_ini), or a refusal (exit 6)",
+                    "register case --cloud cloud.ply --out registration.json\n"
+                    "  planlight register case --cloud cloud.ply --out registration.json --pdf certificate.pdf");
     sub->add_option("case", o.case_folder, "Case folder")->required();
     auto* cloud = sub->add_option("--cloud", o.cloud, "Clean cloud (.ply), of `scan` or of any scanner");
     sub->add_option("--unit", o.unit, "Unit of the cloud's numbers")
@@ -206,6 +220,7 @@ Run add_register(CLI::App& app) {
         "match, help where it is refused, or, without a cloud, are the match");
     sub->add_option("--certificate", o.certificate,
                     "Write a page (.html) with what the match is worth, in words and pictures");
+    pdf_option(sub, o.pdf);
     sub->add_option("--out", o.out, "registration.json to write")->required();
     sub->add_option("--slicer", o.slicer_transform,
                     "Transform for 3D Slicer to write (.tfm): it lays the cloud on the CT");

@@ -20,8 +20,8 @@ namespace {
 struct ReplayOptions {
     Path recording, case_folder;
     bool json = false, show = false;
-    std::string language;        ///< of the window; empty: as the site says
-    ShownReplaySettings window;  ///< with `show`
+    std::string language, theme;  ///< of the window; empty: as the site says
+    ShownReplaySettings window;   ///< with `show`
 };
 
 std::string counts_of(const ReplayResult& r) {
@@ -102,7 +102,7 @@ int run_replay(const ReplayOptions& options) {
                           "Start the program in a desktop session, or replay without --show.");
     if (options.show) {
         ShownReplaySettings window = options.window;
-        window.words = words_of_window(options.language, read_site_settings());
+        window.window = settings_of_window(options.language, options.theme, read_site_settings());
         const auto shown = show_replay(options.recording, the_case, window);
         if (!shown) {
             fmt::print("The window was closed before the end of the replay.\n");
@@ -141,6 +141,7 @@ Run add_replay(CLI::App& app) {
     sub->add_flag("--close", o.window.close_at_end, "The window is closed at the end")->needs(show);
     sub->add_option("--screenshots", o.window.screenshots, "Folder for pictures of the window")->needs(show);
     language_option(sub, o.language);
+    theme_option(sub, o.theme);
     json_flag(sub, o.json);
     return [options] { return run_replay(*options); };
 }

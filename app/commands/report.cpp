@@ -6,6 +6,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/pdf_option.h"
 #include "app/console.h"
 #include "app/report/operation_comparison.h"
 #include "app/report/operation_pdf.h"
@@ -58,7 +59,7 @@ int run_report(const ReportOptions& options) {
     check_out(out, options.pdf, options.recording);
     check_can_write(out);
     check_can_write(Path(out).replace_extension(".json"));
-    if (!options.pdf.empty()) check_can_write(options.pdf);
+    check_pdf(options.pdf);
     OperationFacts facts = facts_of_operation(options.recording);
     if (options.case_folder.empty())
         compare_moment(facts, options.recording);
@@ -66,7 +67,8 @@ int run_report(const ReportOptions& options) {
         compare_moment(facts, options.recording, read_case(options.case_folder));
     const std::string json = operation_json(facts);
     write_operation_report(facts, json, out);
-    if (!options.pdf.empty()) write_safely(options.pdf, operation_pdf(facts), ReadableBy::owner);
+    if (!options.pdf.empty())
+        write_safely(options.pdf, operation_pdf(facts, paper_of(read_site_settings())), ReadableBy::owner);
     if (options.json)
         std::cout << json;
     else
@@ -84,14 +86,14 @@ Run add_report(CLI::App& app) {
     const auto options = std::make_shared<ReportOptions>();
     ReportOptions& o = *options;
     auto* sub = add_command(app, "report", "A page on an operation: what was shown, when, and how far off it was",
-                            "report case/recordings/2026-03-14T09-30-00Z.plrec");
+                            "report case/recordings/2026-03-14T09-30-00Z.plrec --pdf report.pdf");
     sub->add_option("recording", o.recording, "Recording of a session")->required();
     sub->add_option("--out", o.out,
                     "Page to write (default: beside the recording); its figures stand beside it as .json");
     sub->add_option(
         "--case", o.case_folder,
         "Case folder, to measure plan and light of one moment (default: where it was when it was recorded)");
-    sub->add_option("--pdf", o.pdf, "Write it as PDF as well");
+    pdf_option(sub, o.pdf);
     json_flag(sub, o.json);
     return [options] { return run_report(*options); };
 }

@@ -80,8 +80,8 @@ int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, cons
     model.use_landmarks = "Save landmarks";
     if (!model.fit)
         model.status = {StatusKind::ready, "Click landmarks on the skin and on the scan.", {"Nothing is projected."}};
-    const std::vector<PointPair> pairs =
-        click_landmarks(model, already, words_of_window(options.recorded.language, read_site_settings()));
+    const std::vector<PointPair> pairs = click_landmarks(
+        model, already, settings_of_window(options.recorded.language, options.recorded.theme, read_site_settings()));
     if (pairs.empty()) {
         fmt::print("No landmarks were clicked; nothing was written.\n");
         return 0;
@@ -156,7 +156,8 @@ int run_review(const ReviewOptions& options) {
     if (!display_is_there())
         throw DeviceError("Display", "no window can be opened here",
                           "Start the program in a desktop session, or give --picture FILE.png of `planlight review`.");
-    show_model(model, view, words_of_window(options.recorded.language, read_site_settings()));
+    show_model(model, view,
+               settings_of_window(options.recorded.language, options.recorded.theme, read_site_settings()));
     return 0;
 }
 
@@ -205,6 +206,7 @@ Run add_review(CLI::App& app) {
         ->expected(2)
         ->check(CLI::NonNegativeNumber);
     language_option(sub, o.recorded.language);
+    theme_option(sub, o.recorded.theme);
     json_flag(sub, o.json);
     return [options] { return run_review(*options); };
 }

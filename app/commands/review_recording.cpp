@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -16,6 +17,7 @@
 #include "app/windows/camera_picture.h"
 #include "app/windows/scene_view.h"
 #include "planning_io/files/image_file.h"
+#include "planning_io/files/keep_to_owner.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
@@ -34,6 +36,7 @@ int write_clip(const RecordingReviewOptions& options, RecordedMoments& moments, 
     constexpr double kSame_s = 1e-6;
     int number = 0;
     write_folder_safely(folder, true, [&](const fs::path& into) {
+        keep_to_owner(into);  // it shows the face
         std::string times = "file,seconds\n";
         const std::vector<double>& at_s = moments.line().frames_s;
         for (std::size_t i = 0; i < at_s.size(); ++i) {
@@ -47,6 +50,7 @@ int write_clip(const RecordingReviewOptions& options, RecordedMoments& moments, 
                              fmt::format("kept no frame from {:g} to {:g} s", options.clip_s[0], options.clip_s[1]),
                              "The times of its frames stand in review.json (\"frames_s\").");
         write_safely(into / "times.csv", times);
+        keep_to_owner(into);
     });
     return number;
 }
@@ -97,11 +101,11 @@ std::string compared(const RecordingReviewOptions& options, RecordedMoments& mom
             return fmt::format("{}-{:.3f}.{}", what, moment.at_s, ends);
         };
         if (moment.why_not.empty()) {
-            write_png(rgb_of(brightened(pictures.frame.left)), out / name("left", "png"));
-            write_png(rgb_of(brightened(pictures.frame.right)), out / name("right", "png"));
+            write_png(rgb_of(brightened(pictures.frame.left)), out / name("left", "png"), ReadableBy::owner);
+            write_png(rgb_of(brightened(pictures.frame.right)), out / name("right", "png"), ReadableBy::owner);
             write_png(render_scene(scene_of(moment, std::make_shared<TriangleMesh>(the_case.skin)), view_of(moment)),
-                      out / name("head", "png"));
-            write_safely(out / name("plan-and-light", "csv"), comparison_csv(moment));
+                      out / name("head", "png"), ReadableBy::owner);
+            write_safely(out / name("plan-and-light", "csv"), comparison_csv(moment), ReadableBy::owner);
         } else if (!options.json) {
             warn("plan and light cannot be compared at that moment. " + moment.why_not);
         }
@@ -112,6 +116,27 @@ std::string compared(const RecordingReviewOptions& options, RecordedMoments& mom
         warn(std::string("plan and light cannot be compared: ") + fault.what() + ". Name the case with --case.");
         return {};
     }
+}
+
+/// Who waits for the file may open it: the rest may take long.
+void say_written(const RecordingReviewOptions& options, const fs::path& file) {
+    if (!options.json) fmt::print("{}\n", file.string());
+    std::fflush(stdout);
+}
+
+/// The pictures of the frame nearest to the moment that was asked for, with plan and light in them.
+void show_moment(const RecordingReviewOptions& options, RecordedMoments& moments, const fs::path& out,
+                 ReviewedMoment& shown) {
+    check_frames(moments.line(), options.recording);
+    const std::size_t frame = frame_near(moments.line(), options.at_s);
+    const RecordedMoment pictures = moments.moment(frame);
+    const std::string name = fmt::format("frame-{:.3f}.png", pictures.at_s);
+    write_png(picture_of(pictures), out / name, ReadableBy::owner);
+    shown.pictures = {
+        {name, fmt::format("At {:.3f} s: left camera, right camera, and what the projector was given, if it was kept.",
+                           pictures.at_s)}};
+    say_written(options, out / name);
+    shown.more = compared(options, moments, frame, pictures, out);
 }
 
 }  // namespace
@@ -133,7 +158,7 @@ int show_recording(const RecordingReviewOptions& options) {
         throw DeviceError("Display", "no window can be opened here",
                           "Start the program in a desktop session, or look at the page: leave out --show.");
     show_review(options.recording, {options.case_folder, std::max(0.0, options.at_s), options.picture,
-                                    words_of_window(options.language, read_site_settings())});
+                                    settings_of_window(options.language, options.theme, read_site_settings())});
     return 0;
 }
 
@@ -142,33 +167,20 @@ int run_recording_review(const RecordingReviewOptions& options) {
         throw Error(ExitCode::usage, "the clip ends before it begins", "Give --clip FROM TO, in seconds.");
     const fs::path out = options.out.empty() ? review_folder_of(options.recording) : options.out;
     RecordingTimeLine line = time_line_of(options.recording);
-    look_at_pictures(line, options.recording);
-    const std::string figures = review_json(line);
     make_review_folder(out);
-    write_safely(out / "index.html", review_page(line, {}));
-    write_safely(out / "review.json", figures);
-    if (!options.json) fmt::print("{}\n", (out / "index.html").string());
-    std::cout << std::flush;
-    RecordedMoments moments(options.recording, line);
-    if (options.at_s >= 0) {
-        check_frames(line, options.recording);
-        const std::size_t frame = frame_near(line, options.at_s);
-        const RecordedMoment pictures = moments.moment(frame);
-        const std::string name = fmt::format("frame-{:.3f}.png", pictures.at_s);
-        write_png(picture_of(pictures), out / name);
-        write_safely(out / "index.html",
-                     review_page(line,
-                                 {{name, fmt::format("At {:.3f} s: left camera, right camera{}", pictures.at_s,
-                                                     ", and what the projector was given, if it was kept.")}},
-                                 compared(options, moments, frame, pictures, out)));
-        if (!options.json) fmt::print("{}\n", (out / name).string());
-    }
-    if (options.clip_s.size() == 2) {
-        check_frames(line, options.recording);
-        const int frames = write_clip(options, moments, out / "clip");
-        if (!options.json) fmt::print("{} pictures in {}\n", frames, (out / "clip").string());
-    }
-    if (options.json) std::cout << figures;
+    const auto show = [&](ReviewedMoment& shown) {
+        say_written(options, out / "index.html");
+        RecordedMoments moments(options.recording, line);
+        if (options.at_s >= 0) show_moment(options, moments, out, shown);
+        if (options.clip_s.size() == 2) {
+            check_frames(line, options.recording);
+            const int frames = write_clip(options, moments, out / "clip");
+            if (!options.json) fmt::print("{} pictures in {}\n", frames, (out / "clip").string());
+        }
+    };
+    write_review(line, out, show,
+                 [&](RecordingTimeLine& looked_at) { look_at_pictures(looked_at, options.recording); });
+    if (options.json) std::cout << review_json(line);
     if (!line.ended.empty()) warn(line.ended);
     if (line.damaged_pictures)
         throw DamagedFileError(options.recording, "holds pictures that are damaged; what happened is shown to its end",

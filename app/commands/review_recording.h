@@ -16,7 +16,7 @@ struct RecordingReviewOptions {
     bool json = false;
     bool show = false;              ///< in a window, and nothing is written
     std::filesystem::path picture;  ///< of that window, which is then closed; empty: none
-    std::string language;           ///< of the window; empty: the site's
+    std::string language, theme;    ///< of the window; empty: the site's
 };
 
 /// Whether this is a recording and not a case.

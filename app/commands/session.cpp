@@ -4,18 +4,14 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/language_option.h"
+#include "app/commands/session_recording.h"
 #include "app/commands/surgeon_option.h"
 #include "app/console.h"
-#include "app/disk_room.h"
-#include "app/end_signals.h"
 #include "app/igtl/session_link.h"
 #include "app/live/live_window.h"
 #include "app/live/real_room.h"
 #include "app/live/simulated_fault.h"
 #include "app/live/simulated_room.h"
-#include "app/recording/recording_head.h"
-#include "app/report/html_page.h"
-#include "app/report/report_beside.h"
 #include "app/session_observers.h"
 #include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
@@ -26,41 +22,6 @@
 
 namespace planlight {
 namespace {
-
-struct SessionOptions {
-    Path case_folder, volume;
-    Path room;  ///< room.json of real devices; empty: the simulated room
-    Path keep;  ///< folder for every match; empty: CASE/registrations
-    std::string record = "events";
-    bool anonymous = false;  ///< the recording
-    bool no_report = false;  ///< at the end, beside the recording
-    Path recordings;         ///< folder; empty: CASE/recordings
-    Path resume;             ///< recording of the session to go on with; empty: the last one is offered
-    std::string series_uid;
-    std::string language;  ///< of the window; empty: as the site says
-    std::string theme;     ///< empty: the site's
-    std::string surgeon;   ///< where he stands; empty: as the site says
-    std::string preset = "paper", projector_monitor, operator_monitor;
-    unsigned seed = 1;
-    double speed_mm_s = 20;
-    std::string fault;
-    int igtl_port = 0;  ///< 0: no other system is told
-    std::string igtl_address = MessageServerSettings{}.address;
-    bool autoplay = false, json = false;
-    double end_after_s = 0;  ///< wall time; 0 = until the window is closed
-    double idle_first_s = 0;
-    Path screenshots;
-    double light_delay_ms = -1;  ///< of the projector window; below 0: the default, or what `projector_file` says
-    Path projector_file;         ///< projector.json of the monitor; empty: none
-};
-
-Path recordings_folder(const SessionOptions& options) {
-    return options.recordings.empty() ? options.case_folder / kRecordingsFolder : options.recordings;
-}
-
-Path matches_folder(const SessionOptions& options) {
-    return options.keep.empty() ? options.case_folder / kRegistrationsFolder : options.keep;
-}
 
 constexpr const char* kLookedAt = "The last session is being looked at.";
 
@@ -82,112 +43,6 @@ std::optional<ResumeOffer> resume_of(const SessionOptions& options, const Case& 
     }
 }
 
-/// The recording of a session, and at its end the report beside it. Both are ended however the session ends, but for a
-/// kill; what they lack is said.
-class Recorded {
-public:
-    Recorded() = default;
-    Recorded(std::unique_ptr<SessionRecorder> recorder, Path file, bool report, bool anonymous)
-        : recorder_(std::move(recorder)), file_(std::move(file)), report_(report), anonymous_(anonymous) {}
-    ~Recorded() { end({}, {}); }
-    Recorded(const Recorded&) = delete;
-    Recorded& operator=(const Recorded&) = delete;
-    SessionRecorder* get() const { return recorder_.get(); }  ///< null: nothing is recorded
-
-    /// While the window says so; who closes it once more does not wait for the report.
-    void end(SessionWindow& window) {
-        window.stay();
-        end(
-            [&](const std::function<ReportBeside()>& write) {
-                return window.while_made(
-                    "The report of this session is being written.", 0.5, write,
-                    {"Close the window to end without it.", "the session is over", "the session is over"});
-            },
-            [&] { return window.closed(); });
-    }
-
-private:
-    using Meanwhile = std::function<ReportBeside(const std::function<ReportBeside()>&)>;
-    using Closed = std::function<bool()>;
-    void end(const Meanwhile& meanwhile, const Closed& closed) noexcept {
-        if (!recorder_) return;
-        const std::unique_ptr<SessionRecorder> recorder = std::move(recorder_);
-        try {
-            if (const std::string lacks = recorder->finish(); !lacks.empty()) warn(lacks);
-        } catch (const std::exception& fault) {
-            warn(std::string("The recording could not be ended: ") + fault.what());
-        }
-        if (report_ && recorder->room_was_entered()) report(meanwhile, closed);
-    }
-    /// A signal ends it as closing the window does; the one that ended the session does not.
-    void report(const Meanwhile& meanwhile, const Closed& closed) noexcept {
-        try {
-            const auto go_on = [&closed, before = times_asked_to_end()] {
-                if ((closed && closed()) || times_asked_to_end() != before)
-                    throw std::runtime_error("it was ended before it was done");
-            };
-            const auto write = [&] { return write_report_beside(file_, go_on); };
-            const ReportBeside report = meanwhile ? meanwhile(write) : write();
-            fmt::print(stderr, "{}\nThe report of this session: {} and {}. {}, as the recording does.\n",
-                       report.verdict, report.page.string(), report.pdf.string(),
-                       anonymous_ ? "It names nobody, and shows what lies round the plan alone"
-                                  : "It shows the patient's face");
-        } catch (const std::exception& fault) {
-            warn(fmt::format(
-                "The report of this session could not be written: {}. The recording is there; write it with "
-                "`planlight report {}`.",
-                fault.what(), file_.string()));
-        }
-    }
-
-    std::unique_ptr<SessionRecorder> recorder_;
-    Path file_;
-    bool report_ = false, anonymous_ = false;
-};
-
-/// The light does not wait for a disk; whoever records or keeps matches must know before it starts.
-void warn_of_full_disks(const SessionOptions& options) {
-    const bool records = record_mode_of(options.record) != RecordMode::none;
-    for (const std::string& warning :
-         warnings_of_full_disks(records ? std::optional(disk_room_of(recordings_folder(options))) : std::nullopt,
-                                disk_room_of(matches_folder(options))))
-        warn(warning);
-}
-
-/// The recording of this session, said where and how much; none with `--record none`.
-Recorded recorder_of(const SessionOptions& options, const Case& the_case, const DrawingSettings& drawing) {
-    const RecordMode mode = record_mode_of(options.record);
-    if (mode == RecordMode::none) {
-        fmt::print(stderr, "This session is not recorded, and there will be no report of it.\n");
-        return {};
-    }
-    if (options.anonymous && mode == RecordMode::all)
-        throw Error(ExitCode::usage, "what is recorded to be replayed cannot be anonymous",
-                    "Give --record events with --anonymous.");
-    const Path file = new_recording_name(recordings_folder(options));
-    auto sink = std::make_unique<RecordingFile>(file);
-    const RecordingHead head = recording_head(the_case, options.case_folder, mode, drawing);
-    const double free_gb = disk_room_of(file.parent_path()).free_gb;
-    if (options.anonymous) {
-        fmt::print(
-            stderr,
-            "Recorded in {}: what happens and some of the frames, without names, and blurred but for the plan's "
-            "surroundings, at most 1 GB an hour; {:.0f} GB are free. Only {} can read it; no later session can go on "
-            "with its match. Matches with the scan of the face are still kept in {}.\n",
-            file.string(), free_gb, operator_name(), matches_folder(options).string());
-        return {std::make_unique<SessionRecorder>(std::move(sink), without_names(head), RecordingWriterSettings{},
-                                                  FrameChoiceSettings{}, NamesLeftOut(the_case)),
-                file, !options.no_report, true};
-    }
-    fmt::print(stderr,
-               "Recorded in {}: {}; {:.0f} GB are free. It shows the patient's face, and only {} can read it.\n",
-               file.string(),
-               mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
-                                          : "every frame, about 23 GB an hour in the paper's room",
-               free_gb, operator_name());
-    return {std::make_unique<SessionRecorder>(std::move(sink), head), file, !options.no_report, false};
-}
-
 /// Other systems are told by OpenIGTLink; null where nobody is.
 std::unique_ptr<SessionLink> link_of(const SessionOptions& options, const Case& the_case, const SiteSettings& site) {
     if (options.igtl_port == 0) return nullptr;
@@ -207,11 +62,11 @@ std::unique_ptr<SessionLink> link_of(const SessionOptions& options, const Case& 
 /// Who is told of a session, for as long as it runs.
 struct Listeners {
     std::unique_ptr<SessionLink> link;  // a port that is taken is said before a recording is begun
-    Recorded recorded;
+    RecordedSession recorded;
     SessionObservers all;
     Listeners(const SessionOptions& options, const Case& the_case, const SiteSettings& site,
               const DrawingSettings& drawing)
-        : link(link_of(options, the_case, site)), recorded(recorder_of(options, the_case, drawing)) {
+        : link(link_of(options, the_case, site)), recorded(recording_of_session(options, the_case, site, drawing)) {
         warn_of_full_disks(options);
         all.add(recorded.get());
         all.add(link.get());
@@ -229,14 +84,14 @@ LiveOptions live_options(const SessionOptions& options, const SiteSettings& site
     live.observer = listeners.all.all();
     live.projector_monitor = options.projector_monitor.empty() ? site.projector_monitor : options.projector_monitor;
     live.operator_monitor = options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
-    if (!options.projector_file.empty()) live.projector = read_projector_file(options.projector_file);
-    if (options.light_delay_ms >= 0) live.projector.light_delay = from_seconds(options.light_delay_ms / 1e3);
+    live.projector = projector_facts(options);
     live.autoplay = options.autoplay;
     live.idle_first_s = options.idle_first_s;
     live.json = options.json;
     live.end_after_s = options.end_after_s;
     live.screenshots = options.screenshots;
     live.keep_matches_in = matches_folder(options);
+    live.recorded = listeners.recorded.of_patient();
     if (recorder) live.trouble = [recorder] { return recorder->trouble(); };
     return live;
 }
@@ -302,10 +157,8 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
 
 int run_session(const SessionOptions& options) {
     const SiteSettings site = site_with(options.surgeon);
-    SessionWindow window(
-        options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor,
-        words_of_window(options.language, site),
-        (options.theme.empty() ? site.theme : options.theme) == "bright" ? ThemeKind::bright : ThemeKind::dark);
+    SessionWindow window(options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor,
+                         words_of_window(options.language, site), theme_of_window(options.theme, site));
     const Case the_case =
         window.while_made("The case is being read.", 0.1, [&] { return read_case(options.case_folder); });
     if (!options.json) fmt::print("{}\n", title_of(the_case));
@@ -353,12 +206,11 @@ Run add_session(CLI::App& app) {
                     "refused (exit 6)")
         ->excludes(delay);
     sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
+    sub->add_option("--operator-name", o.operator_name,
+                    "Who operates, for the recording and its report (default: the site's, else the account's name)");
     surgeon_option(sub, o.surgeon);
     language_option(sub, o.language);
-    sub->add_option(
-           "--theme", o.theme,
-           "Colours of the operator's window: dark, or bright for a bright room (default: the site's, else dark)")
-        ->check(CLI::IsMember({"dark", "bright"}));
+    theme_option(sub, o.theme);
     sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str()->excludes(room);
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")
         ->capture_default_str()

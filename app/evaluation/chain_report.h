@@ -6,7 +6,7 @@
 
 #include "app/evaluation/run_chain.h"
 #include "app/prepare_case.h"
-#include "app/report/html_page.h"
+#include "app/report/document.h"
 
 namespace planlight {
 
@@ -48,8 +48,8 @@ std::string write_report_json(const std::filesystem::path& file, const Preparati
 std::vector<PresetSummary> merge_reports(const std::vector<std::filesystem::path>& reports,
                                          const std::filesystem::path& file);
 
-/// report.html: one self-contained page with the figures and the pictures.
-void write_report_html(const std::filesystem::path& file, const Preparation& prepared,
-                       const std::vector<ChainFigures>& rooms, const std::vector<ReportPicture>& pictures);
+/// The report with the figures and the pictures.
+Document chain_document(const Preparation& prepared, const std::vector<ChainFigures>& rooms,
+                        const std::vector<ReportPicture>& pictures);
 
 }  // namespace planlight

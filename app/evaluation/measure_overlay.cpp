@@ -274,7 +274,7 @@ OverlayErrors measure_overlay(const simulation::SimulatedRig& rig, const Plan& p
             line.emplace(osteotomy->points_in_ct, osteotomy->closed, rig);
         for (const Stroke& stroke : drawing.strokes) {
             const bool wanted = stroke.item == static_cast<int>(index) && stroke.kind != StrokeKind::label &&
-                                (shapes || (stroke.kind != StrokeKind::tick));
+                                stroke.kind != StrokeKind::check_mark && (shapes || (stroke.kind != StrokeKind::tick));
             if (!wanted) continue;
             const Light light = light_of(stroke, rig, renderer, render, picture);
             if (light.empty()) {

@@ -12,6 +12,7 @@
 #include "planning_io/case/slicer_scene.h"
 #include "planning_io/dicom/dicom_objects.h"
 #include "planning_io/dicom/dicom_study.h"
+#include "planning_io/files/keep_to_owner.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
@@ -44,6 +45,7 @@ DicomStudy study_of_case(const Case& the_case, const fs::path& series_folder, co
 struct KeyPicture {
     std::string what;
     RgbImage picture;
+    bool words = true;  ///< labels, a name card: in the light, and so before the cameras
 };
 
 std::vector<KeyPicture> key_pictures(const Case& the_case, const CaseDrawing& drawing,
@@ -57,9 +59,9 @@ std::vector<KeyPicture> key_pictures(const Case& the_case, const CaseDrawing& dr
     const SceneView view = view_of_plan(drawing.drawing);
     pictures.push_back(
         {operation.cloud ? "The scan on the skin after the match, coloured by its distance" : "The plan on the skin",
-         render_scene(scene_of_fit(model, FitView::after), view, kWidth, kHeight)});
+         render_scene(scene_of_fit(model, FitView::after), view, kWidth, kHeight), false});
     pictures.push_back({"How far off the match may be: 95 % bound at every point of the skin",
-                        render_scene(scene_of_fit(model, FitView::predicted_error), view, kWidth, kHeight)});
+                        render_scene(scene_of_fit(model, FitView::predicted_error), view, kWidth, kHeight), false});
     if (!operation.facts || !operation.facts->moment) return pictures;
     const OperationMoment& moment = *operation.facts->moment;
     const std::string at = fmt::format(" {:.0f} s after the room was entered", moment.at_s);
@@ -93,13 +95,20 @@ std::vector<SlicerLine> lit_lines(const Stroke& stroke) {
     return lines;
 }
 
+/// As it was drawn in that session; of a match alone, as this site draws.
+CaseDrawing drawing_of(const Case& the_case, const ExportedOperation& operation) {
+    DrawingSettings how = drawing_settings(read_site_settings());
+    if (operation.facts) how.up_in_ct = operation.facts->head.up_in_ct;
+    return CaseDrawing(the_case, how);
+}
+
 }  // namespace
 
 std::vector<std::string> export_into_study(const Case& the_case, const ExportedOperation& operation,
                                            const fs::path& series_folder, const std::string& series,
                                            const fs::path& folder) {
     const DicomStudy study = study_of_case(the_case, series_folder, series);
-    const CaseDrawing drawing(the_case, drawing_settings(read_site_settings()));
+    const CaseDrawing drawing = drawing_of(the_case, operation);
     const RigidTransform& patient_from_ct = operation.match.patient_from_ct;
     DicomObjectName name;
     name.made = operation.made.empty() ? today() : operation.made;
@@ -109,6 +118,7 @@ std::vector<std::string> export_into_study(const Case& the_case, const ExportedO
     for (Eigen::Index i = 0; i < 16; ++i) name.id += fmt::format("{:.9g} ", patient_from_ct.matrix()(i));
     std::vector<std::string> written;
     write_folder_safely(folder, false, [&](const fs::path& into) {
+        keep_to_owner(into);  // name and face
         const auto next = [&](const std::string& file) {
             written.push_back(file);
             return into / file;
@@ -128,7 +138,7 @@ std::vector<std::string> export_into_study(const Case& the_case, const ExportedO
         name.number = 0;
         for (const KeyPicture& key : key_pictures(the_case, drawing, operation)) {
             ++name.number;
-            write_secondary_capture(study, name, key.what, key.picture, true,
+            write_secondary_capture(study, name, key.what, key.picture, {true, key.words},
                                     next(fmt::format("picture-{}.dcm", name.number)));
         }
     });
@@ -136,7 +146,7 @@ std::vector<std::string> export_into_study(const Case& the_case, const ExportedO
 }
 
 void export_for_slicer(const Case& the_case, const ExportedOperation& operation, const fs::path& folder) {
-    const CaseDrawing planned(the_case, drawing_settings(read_site_settings()));
+    const CaseDrawing planned = drawing_of(the_case, operation);
     const CaseDrawing drawing(the_case, planned, operation.match.skin);
     SlicerScene scene;
     scene.skin = the_case.skin;

@@ -28,7 +28,8 @@ std::vector<std::string> export_into_study(const Case& the_case, const ExportedO
                                            const std::filesystem::path& series_folder, const std::string& series,
                                            const std::filesystem::path& folder);
 
-/// The same as a folder that 3D Slicer opens (`write_slicer_scene`), with the light as it is drawn on the skin.
+/// The same as a folder that 3D Slicer opens (`write_slicer_scene`), with the whole plan as lines on the
+/// skin: also what a person hid during the operation.
 void export_for_slicer(const Case& the_case, const ExportedOperation& operation, const std::filesystem::path& folder);
 
 }  // namespace planlight

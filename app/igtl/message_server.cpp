@@ -197,6 +197,8 @@ bool MessageServer::Parts::may_accept() {
 void MessageServer::Parts::accept_new() {
     while (may_accept()) {
         Descriptor socket(::accept4(listener.number(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+        // Where the system has no room for another one he stays in its queue, and is asked for no sooner than the next.
+        if (socket.number() < 0 && errno != EAGAIN && errno != EINTR) may_come = 0;
         if (socket.number() < 0) return;
         may_come -= 1;
         if (clients.size() >= settings.most_clients) {

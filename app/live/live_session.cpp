@@ -43,6 +43,11 @@ LiveSession::LiveSession(MakeRoom make_room, const Case& the_case, const CaseDra
 }
 
 LiveSession::~LiveSession() {
+    end();
+    thread_.join();
+}
+
+void LiveSession::end() {
     {
         const std::lock_guard lock(mutex_);
         ending_ = true;
@@ -50,7 +55,6 @@ LiveSession::~LiveSession() {
         light_ = {nullptr, light_.number + 1};
     }
     wake_.notify_all();
-    thread_.join();
 }
 
 NotKept LiveSession::not_kept() const {

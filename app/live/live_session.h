@@ -39,7 +39,10 @@ public:
     LiveSession(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
                 std::filesystem::path keep_matches_in, SessionObserver* observer = nullptr,
                 std::optional<ResumeOffer> offer = {});
-    ~LiveSession();
+    ~LiveSession();  ///< waits for its thread
+
+    /// There is no light from now on, and the thread ends as soon as it can; it is not waited for.
+    void end();
 
     /// Queued; `dark` and `stop` overtake everything that waits. The model says so at once. Returns why it does nothing
     /// in the state of now, as a sentence; empty: it is taken. `item`: of `light_item`, `hide_item` and `show_item`,

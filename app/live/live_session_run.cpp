@@ -17,15 +17,6 @@ bool asks_for_light(OperatorAction action) {
            action == OperatorAction::confirm;
 }
 
-/// Nothing is left of what was lit: no figure of it, and no yes to it.
-void show_no_light(OperatorModel& m) {
-    if (m.confirm && m.next == OperatorAction::confirm) m.next = OperatorAction::none;
-    m.confirm = false;
-    m.figures = {};
-    m.scene.light = nullptr;
-    for (PlanRow& row : m.rows) row.light_off_mm.reset();
-}
-
 bool is_of_items(OperatorAction action) {
     return action == OperatorAction::light_item || action == OperatorAction::hide_item ||
            action == OperatorAction::show_item;
@@ -97,7 +88,7 @@ std::unique_ptr<Room> LiveSession::make(const MakeRoom& make_room) {
     view_.set_old_after(std::max<Instant>(kOldAfter, 3 * room->look_interval()));
     if (observer_)
         observer_->room_entered(
-            {room->name(), room->simulated(), room->markers(), room->rig(), room->notes(), room->clock().now()});
+            {room->name(), room->kind(), room->markers(), room->rig(), room->notes(), room->clock().now()});
     return room;
 }
 
@@ -105,8 +96,8 @@ void LiveSession::enter_room(const Room& room) {
     const std::vector<std::string> notes = room.notes();
     happened(SessionHappening::room_made, [&](OperatorModel& m) {
         m.status.details.insert(m.status.details.end(), notes.begin(), notes.end());
-        m.simulated = room.simulated();
-        m.case_subtitle = room.name() + " \u00b7 " + m.case_subtitle;
+        m.room_kind = room.kind();
+        m.case_subtitle += " \u00b7 " + room.name();  // the case's code comes first: it stays where there is no room
     });
 }
 

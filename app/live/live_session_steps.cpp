@@ -62,7 +62,7 @@ void LiveSession::find_patient(Session& session, const std::vector<PointPair>& l
     OperatorModel shown = blank_;
     show_match(case_, found, std::make_shared<PointCloud>(session.scanned()->clean.kept), shown);
     if (found.verdict != Verdict::no) {
-        shown.scene.markers = markers_in_ct(session.tracker(), shown.scene.ct_from_rig);
+        shown.scene.markers = markers_in_ct(session.tracker(), shown.scene.ct_from_rig, drawing_.skin);
         shown.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
         name_rows(session.drawing(), shown.rows);  // the match decides which labels have room
         for (const DrawnItem& item : session.drawing().items)
@@ -125,6 +125,7 @@ void LiveSession::confirm(Session& session) {
 /// One press lights the first landmark, each further one says that the light on it is right; after the last the plan is
 /// lit again, and verified.
 void LiveSession::confirm_light(Session& session) {
+    std::optional<LookAt> look_at;
     landmarks_to_look_at_ = static_cast<int>(session.landmarks().size());
     landmark_lit_from_.reset();
     cannot_verify_.clear();
@@ -137,7 +138,9 @@ void LiveSession::confirm_light(Session& session) {
     } else if (++landmark_ < landmarks_to_look_at_) {
         session.light_landmark(static_cast<std::size_t>(landmark_));
         gate_.other_light(seen_at_);
-        landmark_place_ = words_of_place(drawing_.skin, session.landmarks()[static_cast<std::size_t>(landmark_)]);
+        const Eigen::Vector3d& place = session.landmarks()[static_cast<std::size_t>(landmark_)];
+        landmark_place_ = words_of_place(drawing_.skin, place);
+        look_at = LookAt{place, free_view_of(drawing_.skin, place)};
     } else {
         end_verification(session);
         gate_.verify(seen_at_);
@@ -149,8 +152,7 @@ void LiveSession::confirm_light(Session& session) {
         m.confirm = false;                 // until the light of this is there to be looked at
         m.scene.plan = std::make_shared<PlanDrawing>(session.lit_drawing());
         if (landmark_ >= 0) {
-            const Eigen::Vector3d& place = session.landmarks()[static_cast<std::size_t>(landmark_)];
-            m.look_at = LookAt{place, drawing_.skin.nearest(place).normal_in_ct};
+            m.look_at = look_at;
             m.scene.bright_item = landmark_;
         }
     });

@@ -6,26 +6,32 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <string>
 #include <thread>
 #include <utility>
 
 #include "app/case_model.h"
 #include "app/console.h"
+#include "app/live/dark_at_the_end.h"
 #include "app/live/light_keeper.h"
 #include "app/live/live_session.h"
 #include "app/live/projector_keeper.h"
 #include "app/live/projector_watch.h"
+#include "app/live/silent_session.h"
+#include "app/live/step_pictures.h"
 #include "app/live/window_meter.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/files/image_file.h"
-#include "planning_io/files/make_folder.h"
 #include "planning_io/types/error.h"
 #include "projection/projector_window.h"
 
 namespace planlight {
 namespace {
 
-constexpr double kLongestRest_s = 0.03;  ///< between two looks at the session
+constexpr double kLongestRest_s = 0.03;                               ///< between two looks at the session
+constexpr Instant kSessionPatience = std::chrono::milliseconds(500);  ///< with a session that has light on the patient
+/// The same where nothing is real: such a room computes longer than a real one exposes.
+constexpr Instant kSimulatedPatience = std::chrono::milliseconds(2500);
 
 /// The monitor for the light: as asked for, else the first that is not the primary one; empty when there is only one.
 std::string light_monitor(const LiveOptions& options) {
@@ -84,29 +90,19 @@ private:
     std::string confirmed_;  ///< the words on the button that was pressed last
 };
 
-/// A screenshot of the operator window whenever the status changes its kind, and the light of that moment beside it.
-class Screenshots {
-public:
-    explicit Screenshots(std::filesystem::path folder) : folder_(std::move(folder)) {
-        if (!folder_.empty()) make_folder(folder_);
-    }
-    void take(OperatorWindow& window, const OperatorModel& model, const LiveSession& session) {
-        if (folder_.empty()) return;
-        if (model.light_on && !model.figures.delay_to_light_ms) return;  // the light is still being made
-        const auto kind = static_cast<int>(model.status.kind);
-        frames_ = kind == kind_ ? frames_ + 1 : 0;
-        kind_ = kind;
-        if (frames_ != kSettledFrames) return;
-        write_png(window.screenshot(), folder_ / fmt::format("operator-{:02d}.png", ++number_), ReadableBy::owner);
-        if (const auto light = session.light().picture)
-            write_png(*light, folder_ / fmt::format("light-{:02d}.png", number_));
-    }
+/// The light follows the patient, or is about to; a scan's does not.
+bool follows(const OperatorModel& model) {
+    return model.light_on && model.may_light_item;
+}
 
-private:
-    static constexpr int kSettledFrames = 8;  ///< looks at the session
-    std::filesystem::path folder_;
-    int kind_ = -1, frames_ = 0, number_ = 0;
-};
+/// And the light of that moment beside it.
+void take_pictures(StepPictures& pictures, OperatorWindow& window, const OperatorModel& model,
+                   const LiveSession& session) {
+    if (follows(model) && !model.figures.delay_to_light_ms) return;  // the light is still being made
+    const std::string taken = pictures.take(window, model);
+    const auto light = taken.empty() ? nullptr : session.light().picture;
+    if (light) write_png(*light, pictures.folder() / ("light-" + taken), ReadableBy::owner);  // the name card
+}
 
 /// A projector that is lost makes the session dark once; match and markers are kept.
 void tell_of_projector(const ProjectorKeeper& projector, LiveSession& session, ProjectorWatch& watch,
@@ -119,9 +115,31 @@ void tell_of_projector(const ProjectorKeeper& projector, LiveSession& session, P
     watch.put_into(model);
 }
 
+/// What of the patient is recorded; null: nothing.
+const char* words_of(PatientRecorded recorded) {
+    switch (recorded) {
+        case PatientRecorded::with_face:
+            return "This session is recorded: its pictures show the patient's face, and only this account can read "
+                   "them.";
+        case PatientRecorded::blurred:
+            return "This session is recorded without names, and blurred but for the plan's surroundings.";
+        case PatientRecorded::no:
+            break;
+    }
+    return nullptr;
+}
+
+/// In the banner before anything is begun, and on the page of evidence all the time.
+void tell_of_recording(PatientRecorded recorded, bool begun, OperatorModel& model) {
+    const char* const words = words_of(recorded);
+    if (words == nullptr) return;
+    model.evidence.emplace_back(words);
+    if (!begun && model.status.kind == StatusKind::ready) model.status.details.emplace_back(words);
+}
+
 /// What a look at the session counts as.
 WindowMeter::Phase phase_of(const OperatorModel& model) {
-    if (model.light_on) return WindowMeter::Phase::following;
+    if (follows(model)) return WindowMeter::Phase::following;
     return model.next == OperatorAction::none ? WindowMeter::Phase::other : WindowMeter::Phase::idle;
 }
 
@@ -163,16 +181,22 @@ bool display_is_there() {
 
 namespace {
 
-/// The windows' loop, until the operator window is closed; `projector` is null where there is none.
+/// The windows' loop, until the operator window is closed; `projector` is null where there is none. Dark afterwards,
+/// also while the session's thread is still at something.
 int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* projector, const LiveOptions& options,
                 Autoplay autoplay, WindowMeter& meter) {
+    const DarkAtTheEnd dark(session, projector);
     ProjectorWatch watch(projector ? projector->starts() : 0);
-    Screenshots screenshots(options.screenshots);
+    StepPictures pictures(options.screenshots, "operator");
     std::optional<std::chrono::steady_clock::time_point> projecting_since;
     note_end_signals();
+    bool begun = false;  // by a press
     while (!asked_to_end()) {
         OperatorModel model = session.model();
+        say_silence(model, session.projecting(), SteadyClock().now() - session.alive_at(),
+                    model.room_kind == RoomKind::real ? kSessionPatience : kSimulatedPatience);
         if (projector) tell_of_projector(*projector, session, watch, model);
+        tell_of_recording(options.recorded, begun, model);
         if (const std::string trouble = options.trouble ? options.trouble() : ""; !trouble.empty())
             model.status.details.push_back(trouble);
         if (const std::string not_kept = session.not_kept().in_the_banner; !not_kept.empty())
@@ -185,7 +209,7 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
             projector->session_lives(session.alive_at());
         }
         if (action == OperatorAction::quit) return 0;
-        if (action != OperatorAction::none) watch.pressed();
+        if (action != OperatorAction::none) watch.pressed(), begun = true;
         // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays
         // refused.
         if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)
@@ -197,9 +221,12 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
             window.say(session.post(action));
         // After the post: what the session hands over from now on is no light any more.
         if (projector && (action == OperatorAction::dark || action == OperatorAction::stop)) projector->go_dark();
-        if (options.autoplay && meter.idle_s() >= options.idle_first_s)
-            session.post(autoplay.next(model), AskedBy::program);
-        screenshots.take(window, model, session);
+        if (options.autoplay && meter.idle_s() >= options.idle_first_s) {
+            const OperatorAction by_itself = autoplay.next(model);
+            session.post(by_itself, AskedBy::program);
+            begun = begun || by_itself != OperatorAction::none;
+        }
+        take_pictures(pictures, window, model, session);
         session.rethrow_fault();
         window.rest(rest_s);
         meter.note(phase_of(model), window.frames_drawn());
@@ -245,8 +272,7 @@ int run_live_simulated(SessionWindow& screen, MakeRoom make_room, const Case& th
     if (const std::string monitor = light_monitor(options); !monitor.empty()) {
         check_monitor(monitor, options.projector);
         ProjectorKeeperSettings settings = keeper_settings(options);
-        // The simulated room computes longer than a real one exposes.
-        settings.session_patience = std::chrono::milliseconds(2500);
+        settings.session_patience = kSimulatedPatience;
         projector = std::make_unique<ProjectorKeeper>(monitor, settings);
     }
     LiveSession session(std::move(make_room), the_case, drawing, options.keep_matches_in, options.observer,
@@ -276,18 +302,14 @@ int run_live(SessionWindow& screen, const MakeRoomWith& make_room, const Case& t
     return told_at_the_end(code, session, meter, options);
 }
 
-void show_model(const OperatorModel& model, FitView view, std::shared_ptr<const Words> words) {
-    WindowSettings settings;
-    settings.words = std::move(words);
+void show_model(const OperatorModel& model, FitView view, const WindowSettings& settings) {
     OperatorWindow window(settings);
     window.set_fit_view(view);
     while (window.frame(model) != OperatorAction::quit) window.rest(kLongestRest_s);
 }
 
 std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::vector<PointPair>& already,
-                                       std::shared_ptr<const Words> words) {
-    WindowSettings settings;
-    settings.words = std::move(words);
+                                       const WindowSettings& settings) {
     OperatorWindow window(settings);
     window.open_landmarks(already);
     for (;;) {

@@ -19,6 +19,9 @@
 
 namespace planlight {
 
+/// What a recording of the session holds of the patient.
+enum class PatientRecorded { no, with_face, blurred };
+
 /// What `planlight session` was asked for.
 struct LiveOptions {
     std::string
@@ -32,8 +35,9 @@ struct LiveOptions {
     bool json = false;                      ///< at the end print how late the light was, as JSON
     std::optional<ResumeOffer> resume;      ///< a match of an earlier session to go on with
     SessionObserver* observer = nullptr;    ///< told of all that happens; null: nobody
-    std::function<std::string()> trouble;   ///< of the recording, to be said beside all else; may be empty
-    std::filesystem::path screenshots;      ///< folder for a picture of the operator window a step; empty = none
+    PatientRecorded recorded = PatientRecorded::no;  ///< said before the first press, and on the page of evidence
+    std::function<std::string()> trouble;            ///< of the recording, to be said beside all else; may be empty
+    std::filesystem::path screenshots;  ///< folder for a picture of the operator window a step; empty = none
 };
 
 /// True when a window could be opened.
@@ -93,12 +97,11 @@ int run_live(SessionWindow& screen, const MakeRoomWith& make_room, const Case& t
              const LiveOptions& options);
 
 /// The operator window on a model that does not change, until it is closed. Throws DeviceError without a display.
-/// `words`: its language; null: English.
-void show_model(const OperatorModel& model, FitView view = FitView::after, std::shared_ptr<const Words> words = {});
+void show_model(const OperatorModel& model, FitView view, const WindowSettings& settings);
 
 /// The same, with landmarks to be clicked from the start (the model has them), until they are used or the window is
 /// closed. Returns what was clicked on both sides.
 std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::vector<PointPair>& already,
-                                       std::shared_ptr<const Words> words = {});
+                                       const WindowSettings& settings);
 
 }  // namespace planlight

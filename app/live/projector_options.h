@@ -8,8 +8,8 @@ namespace planlight {
 
 /// What `planlight projector` was asked for.
 struct ProjectorOptions {
-    std::filesystem::path recording, keep,
-        out;                         ///< `out`: projector.json, empty: not written; `keep`: folder for what is recorded
+    std::filesystem::path recording, keep, out,
+        pdf;                         ///< `out`: projector.json, empty: not written; `keep`: folder for what is recorded
     std::filesystem::path room;      ///< room.json whose projector and cameras are measured; empty: none
     std::string simulate;            ///< preset of the simulated room; empty: none
     std::vector<std::string> light;  ///< of the simulated room, NAME=NUMBER

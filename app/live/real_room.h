@@ -28,7 +28,7 @@ public:
     const Clock& clock() const override { return clock_; }
     MarkerDesign markers() const override { return {room_.disc_mm, room_.sticker_mm}; }
     std::vector<std::string> notes() const override { return cameras_.notes(); }
-    bool simulated() const override { return cameras_.recorded(); }  ///< then nothing is real
+    RoomKind kind() const override { return cameras_.recorded() ? RoomKind::recorded : RoomKind::real; }
 
 private:
     RoomFile room_;

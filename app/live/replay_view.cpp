@@ -22,7 +22,7 @@ void ReplayView::change(const Change& make) noexcept {
 }
 
 ReplayView::ReplayView(const Case& the_case, const CaseDrawing& drawing, const ReplayPace& pace)
-    : case_(the_case), pace_(pace), blank_(model_of_case(the_case, drawing)), model_(blank_) {
+    : case_(the_case), skin_(drawing.skin), pace_(pace), blank_(model_of_case(the_case, drawing)), model_(blank_) {
     view_.expect_found(false);
     model_.case_title = "REPLAY \u00b7 " + blank_.case_title;
     enter_state(SessionState::opening);
@@ -55,8 +55,8 @@ void ReplayView::enter_state(SessionState state) noexcept {
 
 void ReplayView::room_entered(const RoomFacts& room) noexcept {
     change([&](OperatorModel& m) {
-        m.simulated = room.simulated;
-        m.case_subtitle = room.name + " \u00b7 " + m.case_subtitle;
+        m.room_kind = room.kind;
+        m.case_subtitle += " \u00b7 " + room.name;
     });
     enter_state(SessionState::ready);
 }
@@ -191,7 +191,7 @@ void ReplayView::show_match_of(const Session& session, bool of_this_scan) noexce
         const bool cloud = of_this_scan && session.scanned();
         show_match(case_, *found, cloud ? std::make_shared<PointCloud>(session.scanned()->clean.kept) : nullptr, m);
         if (found->verdict == Verdict::no) return;
-        m.scene.markers = markers_in_ct(session.tracker(), m.scene.ct_from_rig);
+        m.scene.markers = markers_in_ct(session.tracker(), m.scene.ct_from_rig, skin_);
         name_rows(session.drawing(), m.rows);
         m.projector_view = projector_view(session.rig(), m.scene.ct_from_rig);
     });

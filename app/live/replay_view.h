@@ -56,6 +56,7 @@ private:
     void wait_until(Instant at);
 
     const Case& case_;
+    const SkinSurface& skin_;
     const ReplayPace pace_;
     const SteadyClock wall_;
     LiveView view_{wall_};

@@ -7,14 +7,16 @@
 #include "app/console.h"
 #include "app/live/live_session.h"
 #include "app/live/scene_of_session.h"
+#include "app/local_time.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
 namespace {
 
-/// "2026-03-14T09:30:00Z" -> "09:30 UTC".
+/// Of a match, as the clock on the wall had it.
 std::string time_of_day(const std::string& utc) {
-    return utc.size() >= 16 ? utc.substr(11, 5) + " UTC" : "the session before";
+    const std::string here = local_time_of_day(utc);
+    return here.empty() ? "the session before" : here;
 }
 
 }  // namespace
@@ -47,7 +49,7 @@ void LiveSession::resume(Session& session) {
     const RegistrationResult& found = *session.registration();
     OperatorModel shown = blank_;
     show_match(case_, found, nullptr, shown);
-    shown.scene.markers = markers_in_ct(session.tracker(), found.patient_from_ct.inverse());
+    shown.scene.markers = markers_in_ct(session.tracker(), found.patient_from_ct.inverse(), drawing_.skin);
     shown.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
     name_rows(session.drawing(), shown.rows);
     shown.evidence.insert(
@@ -92,6 +94,7 @@ void LiveSession::look_again(Session& session) {
         enter(state_, blank_, m, scan_there_);
     });
     look_whether_it_holds(session, *away_);
+    gate_.new_match();  // a person looked at the light of the projector as it was then
     change_model([&](OperatorModel& m) { show_lit_items(session, m); });
     look_first_ = false;
     away_.reset();

@@ -26,9 +26,9 @@ public:
     virtual std::vector<std::string> notes() const { return {}; }
     /// How often a picture is taken for the window while nothing else wants one.
     virtual Instant look_interval() const { return std::chrono::milliseconds(100); }
-    /// True where nothing is real: the window says so in large letters, and its projector window shows a copy of the
-    /// light.
-    virtual bool simulated() const { return false; }
+    /// Where nothing is real the window says so in large letters. The projector window of a simulated room shows a copy
+    /// of the light.
+    virtual RoomKind kind() const { return RoomKind::real; }
     /// What a simulated room needs to be told: computing takes time there as well, and its patient moves on request.
     virtual void computing() {}
     virtual void let_patient_move(bool) {}

@@ -1,17 +1,38 @@
 #include "app/live/scene_of_session.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "app/windows/orientation.h"
 
 namespace planlight {
 
+SceneMarker marker_on_skin(const Eigen::Vector3d& p_in_ct, const SkinSurface& skin) {
+    constexpr int kWays = 12;
+    const SkinSurface::Point foot = skin.nearest(p_in_ct);
+    SceneMarker marker;
+    marker.normal_in_ct = skin.mean_normal(foot, kStickerRadius_mm);
+    const Eigen::Vector3d u = marker.normal_in_ct.unitOrthogonal(), v = marker.normal_in_ct.cross(u);
+    double above_mm = marker.normal_in_ct.dot(p_in_ct - foot.p_in_ct);
+    for (const double radius_mm : {0.0, kStickerRadius_mm / 2, kStickerRadius_mm})
+        for (int k = 0; k < kWays; ++k) {
+            const double angle = 2 * std::numbers::pi * k / kWays;
+            const Eigen::Vector3d over = foot.p_in_ct + kStickerRadius_mm * marker.normal_in_ct +
+                                         radius_mm * (std::cos(angle) * u + std::sin(angle) * v);
+            if (const auto under = skin.first_hit({over, -marker.normal_in_ct}))
+                above_mm = std::max(above_mm, marker.normal_in_ct.dot(under->p_in_ct - foot.p_in_ct));
+        }
+    marker.p_in_ct = foot.p_in_ct + above_mm * marker.normal_in_ct;
+    return marker;
+}
+
 std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTracker& tracker,
-                                                              const RigidTransform& ct_from_patient) {
+                                                              const RigidTransform& ct_from_patient,
+                                                              const SkinSurface& skin) {
     auto markers = std::make_shared<std::vector<SceneMarker>>();
-    for (const auto& marker : tracker.markers()) {
-        SceneMarker shown;
-        shown.p_in_ct = ct_from_patient * marker.centre_in_patient;
-        markers->push_back(shown);
-    }
+    for (const auto& marker : tracker.markers())
+        markers->push_back(marker_on_skin(ct_from_patient * marker.centre_in_patient, skin));
     return markers;
 }
 
@@ -32,12 +53,6 @@ std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing
         if (line.points_in_ct.size() > 1) lines->push_back(std::move(line));
     };
     for (const auto& stroke : drawing.strokes) add(stroke.points_in_ct, stroke.closed);
-    const auto& whole = overlay.counts.labels_lit;
-    for (const Label& label : drawing.labels) {
-        if (label.of_moment || std::find(whole.begin(), whole.end(), label.item) == whole.end()) continue;
-        for (const auto& sign : label.signs_in_ct)
-            for (const auto& outline : sign) add(outline, true);
-    }
     return lines;
 }
 

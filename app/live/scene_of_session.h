@@ -10,11 +10,15 @@
 namespace planlight {
 
 /// The parts of the 3-D view that a session gives; all in ct.
-/// The markers where the scan found them.
+/// The markers where the scan found them, lying on the skin as it is there and high enough that none of it sticks
+/// through their stickers.
 std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTracker& tracker,
-                                                              const RigidTransform& ct_from_patient);
+                                                              const RigidTransform& ct_from_patient,
+                                                              const SkinSurface& skin);
+SceneMarker marker_on_skin(const Eigen::Vector3d& p_in_ct, const SkinSurface& skin);
 
-/// The light of a simulated room as it truly falls: every stroke through the product's projector model to its pixel,
+/// The light of a simulated room as it truly falls, without labels (the plan has them, and twice on one another nobody
+/// reads them): every stroke through the product's projector model to its pixel,
 /// and from there by the room's own optics to the true skin.
 std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing& drawing,
                                                                const RigCalibration& calibration,

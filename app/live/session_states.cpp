@@ -175,6 +175,14 @@ SessionState after(SessionState state, SessionHappening happening) {
     return state;
 }
 
+void show_no_light(OperatorModel& model) {
+    if (model.confirm && model.next == OperatorAction::confirm) model.next = OperatorAction::none;
+    model.confirm = false;
+    model.figures = {};
+    model.scene.light = nullptr;
+    for (PlanRow& row : model.rows) row.light_off_mm.reset();
+}
+
 Status dark_status(SessionState state) {
     return {StatusKind::dark, "Dark: no light on the patient.", {view_of(state).what_next}, {}};
 }
@@ -192,7 +200,7 @@ void enter(SessionState state, const OperatorModel& blank, OperatorModel& model,
     model.confirm_words = state == SessionState::offered ? "Go on with the last match" : "It fits: use it";
     model.check_skin = view.check_skin;
     model.may_light_item = view.has_match;
-    model.light_on = view.lights && view.has_match;
+    model.light_on = view.lights;  // a scan's stripes, too
     for (int i = 0; i < static_cast<int>(model.steps.size()); ++i)
         model.steps[static_cast<std::size_t>(i)] = i < view.step    ? StepState::done
                                                    : i == view.step ? view.step_state

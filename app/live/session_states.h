@@ -76,6 +76,9 @@ SessionState after(SessionState state, SessionHappening happening);
 /// light), as it is in `blank`, the model of the case alone.
 void enter(SessionState state, const OperatorModel& blank, OperatorModel& model, bool scan_there = true);
 
+/// Nothing is left of what was lit: no figure of it, and no yes to it.
+void show_no_light(OperatorModel& model);
+
 /// What is said after DARK in that state.
 Status dark_status(SessionState state);
 

@@ -5,9 +5,8 @@
 #include <future>
 
 #include "app/live/replay_view.h"
+#include "app/live/step_pictures.h"
 #include "app/windows/operator_window.h"
-#include "planning_io/files/image_file.h"
-#include "planning_io/files/make_folder.h"
 
 namespace planlight {
 namespace {
@@ -17,28 +16,8 @@ using namespace std::chrono_literals;
 /// Thrown out of a replay whose window was closed.
 struct WindowClosed {};
 
-/// A picture whenever the status changes its kind, a moment after.
-class Pictures {
-public:
-    explicit Pictures(std::filesystem::path folder) : folder_(std::move(folder)) {
-        if (!folder_.empty()) make_folder(folder_);
-    }
-    void take(OperatorWindow& window, const OperatorModel& model) {
-        constexpr int kSettled = 6;
-        const auto kind = static_cast<int>(model.status.kind);
-        looks_ = kind == kind_ ? looks_ + 1 : 0;
-        kind_ = kind;
-        if (!folder_.empty() && looks_ == kSettled)
-            write_png(window.screenshot(), folder_ / fmt::format("replay-{:02d}.png", ++number_), ReadableBy::owner);
-    }
-
-private:
-    std::filesystem::path folder_;
-    int kind_ = -1, looks_ = 0, number_ = 0;
-};
-
 /// True: the person has closed it.
-bool show_once(OperatorWindow& window, const ReplayView& view, Pictures& pictures) {
+bool show_once(OperatorWindow& window, const ReplayView& view, StepPictures& pictures) {
     constexpr double kRest_s = 0.03;
     const OperatorModel model = view.model();
     const OperatorAction action = window.frame(model);
@@ -58,9 +37,7 @@ std::string words_of_end(const ReplayResult& result) {
 
 std::optional<ReplayResult> show_replay(const std::filesystem::path& recording, const Case& the_case,
                                         const ShownReplaySettings& settings) {
-    WindowSettings window_settings;
-    window_settings.words = settings.words;
-    OperatorWindow window(window_settings);
+    OperatorWindow window(settings.window);
     DrawingSettings how;
     how.up_in_ct = head_of_recording(recording).up_in_ct;
     const CaseDrawing drawing(the_case, how);
@@ -69,7 +46,7 @@ std::optional<ReplayResult> show_replay(const std::filesystem::path& recording, 
         if (view.closed()) throw WindowClosed{};
     };
     auto replayed = std::async(std::launch::async, [&] { return replay_session(recording, the_case, go_on, &view); });
-    Pictures pictures(settings.screenshots);
+    StepPictures pictures(settings.screenshots, "replay");
     while (replayed.wait_for(0s) != std::future_status::ready)
         if (show_once(window, view, pictures)) view.close();
     try {

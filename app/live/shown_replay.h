@@ -1,20 +1,19 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 
 #include "app/recording/replay_session.h"
-#include "app/words/words.h"
+#include "app/windows/window_settings.h"
 
 namespace planlight {
 
 struct ShownReplaySettings {
-    double speed = 1;                    ///< of the recorded clock
-    double longest_pause_s = 1;          ///< of that clock, in which nothing was seen; of a longer one no more is shown
-    bool close_at_end = false;           ///< else the window stays until it is closed
-    std::filesystem::path screenshots;   ///< folder for a picture of the window a state; empty: none
-    std::shared_ptr<const Words> words;  ///< null: English
+    double speed = 1;                   ///< of the recorded clock
+    double longest_pause_s = 1;         ///< of that clock, in which nothing was seen; of a longer one no more is shown
+    bool close_at_end = false;          ///< else the window stays until it is closed
+    std::filesystem::path screenshots;  ///< folder for a picture of the window a state; empty: none
+    WindowSettings window;              ///< its language and its theme
 };
 
 /// A replay in the operator's window, at the pace at which it was recorded or as near to it as can be computed: the

@@ -19,7 +19,7 @@ public:
     Projector& projector() override { return rig_.projector(); }
     StereoCamera& cameras() override { return rig_.cameras(); }
     const Clock& clock() const override { return rig_.clock(); }
-    bool simulated() const override { return true; }
+    RoomKind kind() const override { return RoomKind::simulated; }
     /// Each is computed, and nothing in it moves by itself.
     Instant look_interval() const override { return std::chrono::seconds(2); }
     void computing() override { rig_.wait(std::chrono::milliseconds(10)); }

@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "projection/label_names.h"
 
 namespace planlight {
 namespace {
@@ -65,6 +69,46 @@ bool is_meant(const std::string& text, std::size_t at, const std::string& name) 
     return (letters && name.size() > 3) || stands_as_a_word(text, at, name.size());
 }
 
+unsigned char byte_at(const std::string& text, std::size_t i) {
+    return static_cast<unsigned char>(text[i]);
+}
+
+/// In small letters (ASCII, and those of Latin and Cyrillic that two bytes of UTF-8 hold), as long as it was.
+std::string in_small_letters(std::string text) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const unsigned char c = byte_at(text, i), next = i + 1 < text.size() ? byte_at(text, i + 1) : 0;
+        if (c >= 'A' && c <= 'Z') text[i] = static_cast<char>(c + 'a' - 'A');
+        if (c == 0xC3 && next >= 0x80 && next <= 0x9E && next != 0x97) text[i + 1] = static_cast<char>(next + 0x20);
+        if (c == 0xD0 && next >= 0x90 && next <= 0x9F) text[i + 1] = static_cast<char>(next + 0x20);
+        if (c == 0xD0 && next >= 0xA0 && next <= 0xAF) text[i] = '\xD1', text[i + 1] = static_cast<char>(next - 0x20);
+    }
+    return text;
+}
+
+/// What the program itself calls things: it says nothing of whoever may be called so.
+bool is_our_word(const std::string& small) {
+    constexpr std::array kOurs{"planlight", "operator", "surgeon", "patient", "localhost", "light",
+                               "dark",      "head",     "skin",    "plan",    "user",      "root"};
+    return std::find(kOurs.begin(), kOurs.end(), small) != kOurs.end();
+}
+
+/// Of a script that has no large letters by which a name could be told: Hebrew, Arabic, Chinese and others.
+bool has_no_large_letters(const std::string& text, std::size_t at) {
+    return byte_at(text, at) >= 0xD6;
+}
+
+/// A part of a person's name is one as a word of its own, or with the s of "Meiers", that begins with a large letter or
+/// stands in a path or in quotes: "light" is none of Mr Light's.
+bool is_meant_part(const std::string& text, const std::string& small, std::size_t at, std::size_t size) {
+    constexpr std::string_view kOfPaths = "/\\@_~";
+    const std::size_t with_s = at + size < text.size() && small[at + size] == 's' ? size + 1 : size;
+    if (!stands_as_a_word(text, at, size) && !stands_as_a_word(text, at, with_s)) return false;
+    const auto of_path = [&](std::size_t i) { return kOfPaths.find(text[i]) != std::string_view::npos; };
+    const bool in_path = (at > 0 && of_path(at - 1)) || (at + size < text.size() && of_path(at + size));
+    const bool large = text.compare(at, 2, small, at, 2) != 0 || has_no_large_letters(text, at);
+    return large || in_path || stands_quoted(text, at, size);
+}
+
 template <class Do>
 void for_each_near(const GrayImage& picture, const Eigen::Vector2d& p, double r, const Do& act) {
     for (int y = std::max(0, static_cast<int>(p.y() - r)); y <= std::min(picture.height - 1.0, p.y() + r); ++y)
@@ -120,6 +164,9 @@ NamesLeftOut::NamesLeftOut(const Case& the_case) {
     for (const std::string* name : {&the_case.names.title, &the_case.names.patient, &the_case.names.plan,
                                     &the_case.names.plan_version, &the_case.names.series})
         add(*name, "…");
+    add_person(the_case.names.patient);
+    const std::vector<std::string> items = names_of(the_case.plan);
+    for (std::size_t i = 0; i < items.size(); ++i) add(items[i], fmt::format("item {}", i + 1));
     const auto& structures = the_case.plan.risk_structures;
     for (std::size_t i = 0; i < structures.size(); ++i) add(structures[i].name, fmt::format("structure {}", i + 1));
 }
@@ -128,13 +175,34 @@ void NamesLeftOut::add_items(const PlanDrawing& drawing) {
     for (std::size_t i = 0; i < drawing.items.size(); ++i) add(drawing.items[i].name, fmt::format("item {}", i + 1));
 }
 
-void NamesLeftOut::add(const std::string& name, const std::string& instead) {
+/// Each word of "MEIER^HANS" or "Dr. Hans Meier" for itself; of two letters and less it is found in too much.
+void NamesLeftOut::add_person(const std::string& name) {
+    constexpr std::size_t kLeast = 3;
+    std::string part;
+    for (const char c : name + ' ') {
+        if (is_of_a_word(c)) {
+            part += c;
+            continue;
+        }
+        if (part.size() >= kLeast && has_letters(part) && !is_our_word(in_small_letters(part)))
+            add(in_small_letters(part), "…", true);
+        part.clear();
+    }
+}
+
+void NamesLeftOut::add_place(const std::filesystem::path& folder) {
+    const std::string path = folder.has_filename() ? folder.string() : folder.parent_path().string();
+    if (path.find('/') != std::string::npos && has_letters(path)) add(path, "…");
+}
+
+void NamesLeftOut::add(const std::string& name, const std::string& instead, bool part) {
     if (name.empty()) return;
-    const auto known = [&](const auto& pair) { return pair.first == name; };
-    if (std::none_of(names_.begin(), names_.end(), known)) names_.emplace_back(name, instead);
-    // The longest first, so that no part of a name is left of it.
-    std::stable_sort(names_.begin(), names_.end(),
-                     [](const auto& a, const auto& b) { return a.first.size() > b.first.size(); });
+    const auto known = [&](const LeftOut& one) { return one.name == name && one.part == part; };
+    if (std::none_of(names_.begin(), names_.end(), known)) names_.push_back({name, instead, part});
+    // The longest first, so that no part of a name is left of it; of two the one that stands for more.
+    std::stable_sort(names_.begin(), names_.end(), [](const LeftOut& a, const LeftOut& b) {
+        return std::pair(a.name.size(), b.part) > std::pair(b.name.size(), a.part);
+    });
 }
 
 std::string NamesLeftOut::out_of(const std::string& json) const {
@@ -161,12 +229,24 @@ std::string NamesLeftOut::out_of(const std::string& json) const {
     return event.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+std::string NamesLeftOut::out_of_room(const std::string& json) const {
+    auto room = nlohmann::ordered_json::parse(json, nullptr, false);
+    if (!room.is_object()) return {};
+    room["name"] = "";
+    room["notes"] = nlohmann::ordered_json::array();
+    return out_of(room.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
 std::string NamesLeftOut::text_without(std::string text) const {
-    for (const auto& [name, instead] : names_) {
-        if (text == name) return instead;
-        for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at)) {
-            const bool meant = is_meant(text, at, name);
+    for (const LeftOut& one : names_)
+        if (!one.part && text == one.name) return one.instead;
+    for (const auto& [name, instead, part] : names_) {
+        std::string small = part ? in_small_letters(text) : std::string();
+        const std::string& searched = part ? small : text;
+        for (std::size_t at = searched.find(name); at != std::string::npos; at = searched.find(name, at)) {
+            const bool meant = part ? is_meant_part(text, small, at, name.size()) : is_meant(text, at, name);
             if (meant) text.replace(at, name.size(), instead);
+            if (meant && part) small.replace(at, name.size(), instead);
             at += meant ? instead.size() : 1;
         }
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,18 +32,29 @@ GrayImage blurred_outside(const GrayImage& picture, const PlanRegion::InPicture&
 /// Names that are to stand nowhere, with what stands in their place.
 class NamesLeftOut {
 public:
-    /// Those of the case: titles, patient, plan, series; risk structures are "structure 1", "structure 2".
+    /// Those of the case: titles, patient, plan, series; items and risk structures are "item 1", "structure 1". Of the
+    /// patient also each part of the name, in any writing.
     explicit NamesLeftOut(const Case& the_case);
-    /// Of the plan's items: "item 1", "item 2".
+    /// Of somebody else, or of a computer: each part of the name.
+    void add_person(const std::string& name);
+    /// A folder, as messages name their files.
+    void add_place(const std::filesystem::path& folder);
+    /// Of the plan's items as they are drawn: "item 1", "item 2".
     void add_items(const PlanDrawing& drawing);
     /// An event (JSON) without the names in what it says; empty where it is none.
     std::string out_of(const std::string& json) const;
+    /// The event of a room, which has its name and notes from a person who may have named anybody in them.
+    std::string out_of_room(const std::string& json) const;
     /// A sentence without them.
     std::string text_without(std::string text) const;
 
 private:
-    void add(const std::string& name, const std::string& instead);
-    std::vector<std::pair<std::string, std::string>> names_;
+    struct LeftOut {
+        std::string name, instead;
+        bool part = false;  ///< of a person's name: any writing, and nothing but a name (`is_meant_part`)
+    };
+    void add(const std::string& name, const std::string& instead, bool part = false);
+    std::vector<LeftOut> names_;
 };
 
 }  // namespace planlight

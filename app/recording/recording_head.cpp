@@ -70,32 +70,35 @@ RecordingHead without_names(RecordingHead head) {
     head.case_title = head.case_code;
     head.plan_name.clear(), head.plan_version.clear();
     head.operator_name.clear(), head.computer.clear();
+    head.operator_named = false;
     head.case_folder.clear();
     head.card.clear();
     return head;
 }
 
 std::string text_of(const RecordingHead& head) {
-    const Json json{{"format", kFormat},
-                    {"version", 1},
-                    {"record", word_of(head.mode)},
-                    {"anonymous", head.anonymous},
-                    {"program", head.program},
-                    {"program_hash", head.program_hash},
-                    {"case",
-                     {{"code", head.case_code},
-                      {"title", head.case_title},
-                      {"volume_hash", head.volume_hash},
-                      {"mesh_hash", head.mesh_hash},
-                      {"plan_hash", head.plan_hash},
-                      {"plan", head.plan_name},
-                      {"plan_version", head.plan_version},
-                      {"folder", head.case_folder.string()}}},
-                    {"up_in_ct", to_json(head.up_in_ct)},
-                    {"card", head.card},
-                    {"began", head.began_utc},
-                    {"operator", head.operator_name},
-                    {"computer", head.computer}};
+    Json json{{"format", kFormat},
+              {"version", 1},
+              {"record", word_of(head.mode)},
+              {"anonymous", head.anonymous},
+              {"program", head.program},
+              {"program_hash", head.program_hash},
+              {"case",
+               {{"code", head.case_code},
+                {"title", head.case_title},
+                {"volume_hash", head.volume_hash},
+                {"mesh_hash", head.mesh_hash},
+                {"plan_hash", head.plan_hash},
+                {"plan", head.plan_name},
+                {"plan_version", head.plan_version},
+                {"folder", head.case_folder.string()}}},
+              {"up_in_ct", to_json(head.up_in_ct)},
+              {"card", head.card},
+              {"began", head.began_utc},
+              {"operator", head.operator_name},
+              {"operator_named", head.operator_named},
+              {"computer", head.computer}};
+    if (!head.settings.empty()) json["settings"] = Json::parse(head.settings);
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -125,6 +128,11 @@ RecordingHead head_of(const std::string& text, const fs::path& file) {
     head.began_utc = root.at("began").text();
     head.operator_name = root.at("operator").text();
     head.computer = root.at("computer").text();
+    if (const auto named = root.find("operator_named")) head.operator_named = named->flag();
+    if (const auto settings = root.find("settings")) {
+        if (!json["settings"].is_object()) settings->refuse("is no object");
+        head.settings = json["settings"].dump();
+    }
     return head;
 }
 

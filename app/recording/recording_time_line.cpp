@@ -41,7 +41,11 @@ class TimeLineMaker {
 public:
     explicit TimeLineMaker(RecordingTimeLine& line) : line_(line) {}
 
-    void enter_room(Instant at) { origin_ = at; }
+    void enter_room(const RecordingChunk& chunk) {
+        origin_ = chunk.at;
+        const Json room = Json::parse(chunk.payload, nullptr, false);
+        if (room.is_object()) line_.room_entered_utc = room.value("utc", "");
+    }
     double since_room_s(Instant at) const { return origin_ ? seconds(at - *origin_) : 0; }
 
     void take_frame(Instant at, std::uint64_t place) {
@@ -239,15 +243,19 @@ RecordingTimeLine time_line_of(const fs::path& recording) {
         return type == chunk_types::kHead || type == chunk_types::kRoom || type == chunk_types::kEvent;
     });
     bool headed = false;
-    while (const auto chunk = reader.next()) {
-        if (chunk->type == chunk_types::kHead) {
-            line.head = head_of(chunk->payload, recording);
-            headed = true;
-        } else if (chunk->type == chunk_types::kRoom) {
-            maker.enter_room(chunk->at);
-        } else {
-            maker.take(*chunk, reader.place());
+    try {
+        while (const auto chunk = reader.next()) {
+            if (chunk->type == chunk_types::kHead) {
+                line.head = head_of(chunk->payload, recording);
+                headed = true;
+            } else if (chunk->type == chunk_types::kRoom) {
+                maker.enter_room(*chunk);
+            } else {
+                maker.take(*chunk, reader.place());
+            }
         }
+    } catch (const Json::exception&) {
+        throw DamagedFileError(recording, "holds an event that cannot be understood", "Copy the file again.");
     }
     if (!headed) throw DamagedFileError(recording, "does not say whose it is", "There is nothing in it to look at.");
     maker.finish();

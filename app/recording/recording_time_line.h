@@ -14,6 +14,7 @@ namespace planlight {
 /// The time line of a recording, and where its frames stand in the file.
 struct RecordingTimeLine : TimeLine {
     RecordingHead head;
+    std::string room_entered_utc;  ///< when the time line begins, by the clock on the wall; empty: not told
     /// Of a kept frame and what belongs to it (`RecordingReader::chunk_at`); 0: there is none.
     struct Places {
         std::uint64_t frame = 0;

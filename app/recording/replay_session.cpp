@@ -334,8 +334,12 @@ ReplayResult replay_session(const fs::path& recording, const Case& the_case,
     how.card = result.head.card;
     const CaseDrawing drawing(the_case, how);
     RoomFacts facts;
-    facts.name = room.value("name", "");
-    facts.simulated = room.value("simulated", false);
+    try {
+        facts.name = room.value("name", "");
+        facts.kind = session_events::room_kind_of(room);
+    } catch (const Json::exception&) {
+        throw DamagedFileError(recording, "does not say in which room it was made", "Copy the file again.");
+    }
     facts.markers = markers_of(room, recording);
     facts.rig = rig_of_text(room["rig"].dump(), recording);
     facts.now = cursor.room()->at;

@@ -282,7 +282,8 @@ std::string said(const std::string& kind, const std::string& headline, const std
 
 std::string room(const RoomFacts& room) {
     return text_of({{"name", room.name},
-                    {"simulated", room.simulated},
+                    {"simulated", room.kind == RoomKind::simulated},
+                    {"recorded", room.kind == RoomKind::recorded},
                     {"disc_mm", room.markers.disc_diameter_mm},
                     {"sticker_mm", room.markers.sticker_diameter_mm},
                     {"rig", Json::parse(planlight::text_of(room.rig))},
@@ -290,6 +291,11 @@ std::string room(const RoomFacts& room) {
                     {"notes", room.notes},
                     {"clock_ns", room.now.count()},
                     {"utc", today()}});
+}
+
+RoomKind room_kind_of(const Json& room) {
+    if (room.value("recorded", false)) return RoomKind::recorded;
+    return room.value("simulated", false) ? RoomKind::simulated : RoomKind::real;
 }
 
 }  // namespace planlight::session_events

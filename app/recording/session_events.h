@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ std::string gate(GateCall call, Instant at, double off_mm, const LightGate::Ruli
 std::string pressed(const std::string& action);
 std::string said(const std::string& kind, const std::string& headline, const std::vector<std::string>& details);
 std::string room(const RoomFacts& room);
+/// Of the event that `room` wrote; a program before this one wrote a recorded room as a simulated one.
+RoomKind room_kind_of(const nlohmann::ordered_json& room);
 
 /// Of `updated`: what was left alone. "lit", and "dark" with its reason.
 const char* word_of(LightTrust trust);

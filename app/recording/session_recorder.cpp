@@ -61,10 +61,10 @@ std::string SessionRecorder::finish() {
     std::string text;
     if (state.dropped_chunks > 0)
         text = fmt::format("{} pieces of the recording are missing: {}.", state.dropped_chunks,
-                           state.problem.empty() ? "the disk was too slow" : state.problem);
+                           state.problem.empty() ? "the disk was too slow" : state.problem.whole);
     if (!state.sync_problem.empty())
         text += fmt::format("{}The disk did not confirm the recording: {}. Look whether it can be read.",
-                            text.empty() ? "" : " ", state.sync_problem);
+                            text.empty() ? "" : " ", state.sync_problem.whole);
     return text;
 }
 
@@ -72,10 +72,10 @@ std::string SessionRecorder::trouble() const {
     const RecordingState state = writer_.state();
     if (!state.problem.empty())
         return fmt::format("The recording stands still: {}. {} pieces are missing; the light is not affected.",
-                           state.problem, state.dropped_chunks);
+                           state.problem.in_few_words, state.dropped_chunks);
     if (!state.sync_problem.empty())
         return fmt::format("The disk did not confirm the recording: {}; the light is not affected.",
-                           state.sync_problem);
+                           state.sync_problem.in_few_words);
     if (state.dropped_chunks > 0)
         return fmt::format("The disk is too slow for the recording: {} pieces are missing; the light is not affected.",
                            state.dropped_chunks);
@@ -83,6 +83,10 @@ std::string SessionRecorder::trouble() const {
 }
 
 void SessionRecorder::input(RecordedInput input) {
+    if (anonymous_ && (input.kind == Kind::failed || input.kind == Kind::stopped || input.kind == Kind::doubt)) {
+        input.text = anonymous_->text_without(std::move(input.text));
+        input.remedy = anonymous_->text_without(std::move(input.remedy));
+    }
     inputs_.push_back(std::move(input));
 }
 
@@ -118,7 +122,7 @@ void SessionRecorder::room_entered(const RoomFacts& room) noexcept {
         now_ = room.now;
         room_entered_ = true;
         std::string text = session_events::room(room);
-        if (anonymous_) text = anonymous_->out_of(text);
+        if (anonymous_) text = anonymous_->out_of_room(text);
         add(chunk_types::kRoom, std::move(text));
     } catch (const std::exception&) {
     }

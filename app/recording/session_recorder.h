@@ -32,6 +32,8 @@ struct RecordingHead {
     Eigen::Vector3d up_in_ct{0, 0, 1};  ///< of the drawing's labels
     std::vector<std::string> card;      ///< as it was lit (`DrawingSettings::card`)
     std::string began_utc, operator_name, computer;
+    bool operator_named = false;  ///< by an option or the site; else the name is that of the account
+    std::string settings;         ///< what the session was told to do: an object of JSON; empty: not told
 };
 
 /// The head without what names a person or a place.
@@ -51,7 +53,8 @@ public:
 
     RecordingState state() const { return writer_.state(); }
     bool room_was_entered() const { return room_entered_; }
-    /// What a person must hear of it now, one sentence: the disk is full or too slow; empty while all is well.
+    /// What a person must hear of it now, one sentence that names no file: the disk is full or too slow; empty while
+    /// all is well.
     std::string trouble() const;
     /// Ends the recording. What is missing in it, or may be, in one sentence; empty when all of it is on the disk.
     std::string finish();

@@ -8,9 +8,7 @@
 #include <numbers>
 
 #include "app/json_text.h"
-#include "app/report/html_page.h"
 #include "planning_io/case/rig_file.h"
-#include "planning_io/files/safe_write.h"
 
 namespace planlight {
 namespace {
@@ -46,6 +44,10 @@ Rgb heat(double share) {
     return {mix(54, 255, 2 * s - 1), mix(214, 80, 2 * s - 1), mix(138, 70, 2 * s - 1)};
 }
 
+Rgb colour_of_pose(std::size_t pose, std::size_t poses) {
+    return heat(static_cast<double>(pose) / static_cast<double>(poses));
+}
+
 /// Where the board's corners, or the light on it, lay in a device's picture.
 RgbImage coverage(const CalibrationReport& report, DeviceName name) {
     const CameraModel& d = *report.calibration.device(name);
@@ -60,7 +62,7 @@ RgbImage coverage(const CalibrationReport& report, DeviceName name) {
                     picture.at(x + i, y + j) = colour;
     };
     for (std::size_t k = 0; k < report.poses.size(); ++k) {
-        const Rgb colour = heat(static_cast<double>(k) / static_cast<double>(report.poses.size()));
+        const Rgb colour = colour_of_pose(k, report.poses.size());
         if (name == DeviceName::projector) {
             for (const LightSample& sample : report.poses[k].left.light) dot(sample.pixel_in_projector, colour);
             for (const LightSample& sample : report.poses[k].right.light) dot(sample.pixel_in_projector, colour);
@@ -76,13 +78,18 @@ const std::string& serial_of(const DeviceSerials& serials, DeviceName name) {
     return name == DeviceName::left_camera ? serials.left_camera : serials.right_camera;
 }
 
-std::string device_rows(const CalibrationReport& report) {
+DocumentTable devices_of(const CalibrationReport& report) {
     const Calibration& c = report.calibration;
-    std::string html =
-        "<table><tr><th>Device</th><th>Serial</th><th>Picture</th><th>Held-out poses</th><th>All poses</th><th>Left "
-        "out</th><th>Focal "
-        "length</th>"
-        "<th>Optical axis</th></tr>";
+    using Kind = DocumentTable::Kind;
+    DocumentTable table{{{"Device", Kind::figure},
+                         {"Serial"},
+                         {"Picture", Kind::figure},
+                         {"Held-out poses", Kind::figure},
+                         {"All poses", Kind::figure},
+                         {"Left out", Kind::figure},
+                         {"Focal length", Kind::figure},
+                         {"Optical axis", Kind::figure}},
+                        {}};
     for (const DeviceName name : kDevices) {
         const auto& d = c.device(name);
         if (!d) continue;
@@ -90,17 +97,17 @@ std::string device_rows(const CalibrationReport& report) {
         const std::string& serial = serial_of(report.serials, name);
         const auto sigma = lens_sigmas(c.bundle, name);
         const double all = static_cast<double>(c.bundle.used[i] + c.bundle.left_out[i]);
-        html += fmt::format(
-            "<tr><td>{}</td><td>{}</td><td>{} x {}</td><td>{:.3f} px</td><td>{:.3f} px</td><td>{:.1f} %</td><td>{:.2f} "
-            "&plusmn; {:.2f} "
-            "px</td>"
-            "<td>{:.2f}, {:.2f} &plusmn; {:.2f} px</td></tr>",
-            text_of(name), serial.empty() ? "not given" : xml_escaped(serial), d->width, d->height,
-            c.held_out.rms_px[i], c.bundle.rms_px[i],
-            all > 0 ? 100 * static_cast<double>(c.bundle.left_out[i]) / all : 0, d->focal_x, sigma[0], d->centre_x,
-            d->centre_y, sigma[2]);
+        table.rows.push_back(
+            {{text_of(name)},
+             {serial.empty() ? "not given" : serial},
+             {fmt::format("{} x {}", d->width, d->height)},
+             {fmt::format("{:.3f} px", c.held_out.rms_px[i])},
+             {fmt::format("{:.3f} px", c.bundle.rms_px[i])},
+             {fmt::format("{:.1f} %", all > 0 ? 100 * static_cast<double>(c.bundle.left_out[i]) / all : 0)},
+             {fmt::format("{:.2f} ± {:.2f} px", d->focal_x, sigma[0])},
+             {fmt::format("{:.2f}, {:.2f} ± {:.2f} px", d->centre_x, d->centre_y, sigma[2])}});
     }
-    return html + "</table>";
+    return table;
 }
 
 /// How far a layer of the volume's grid is from the projector (or the left camera).
@@ -112,12 +119,26 @@ double depth_mm(const Calibration& c, int layer) {
         .z();
 }
 
-std::string verdict(const Calibration& c) {
-    if (c.warnings.empty()) return "<div class=\"verdict yes\">&#10003; Calibrated without a warning.</div>";
-    std::string html = fmt::format("<div class=\"verdict no\">&#9888; Calibrated with {} warning{}.</div>",
-                                   c.warnings.size(), c.warnings.size() == 1 ? "" : "s");
-    for (const std::string& warning : c.warnings) html += fmt::format("<p class=\"no\">{}</p>", xml_escaped(warning));
-    return html;
+PageVerdict verdict_of(const Calibration& c) {
+    if (c.warnings.empty()) return {PageVerdict::Kind::good, "Calibrated without a warning.", {}};
+    return {PageVerdict::Kind::look,
+            fmt::format("Calibrated with {} warning{}.", c.warnings.size(), c.warnings.size() == 1 ? "" : "s"),
+            c.warnings};
+}
+
+/// The colours of `heat` with 0, half and all of what they stand for.
+DocumentScale scale_of(double full_mm) {
+    return {
+        {heat(0), heat(0.5), heat(1)},
+        {{0, "0 mm"}, {0.5, fmt::format("{:.3f} mm", 0.5 * full_mm)}, {1, fmt::format("{:.3f} mm and more", full_mm)}}};
+}
+
+/// Which colour in the pictures is which pose.
+DocumentKey key_of_poses(const CalibrationReport& report) {
+    DocumentKey key;
+    for (std::size_t k = 0; k < report.poses.size(); ++k)
+        key.colours.emplace_back(colour_of_pose(k, report.poses.size()), report.poses[k].name);
+    return key;
 }
 
 }  // namespace
@@ -236,56 +257,73 @@ std::string calibration_json(const CalibrationReport& report) {
     return json_text(json) + "\n";
 }
 
-void write_calibration_html(const CalibrationReport& report, const std::filesystem::path& file) {
+namespace {
+
+void add_devices(const CalibrationReport& report, std::vector<DocumentBlock>& blocks) {
+    const HeldOut& held_out = report.calibration.held_out;
+    blocks.push_back(DocumentHeading{"Devices"});
+    blocks.push_back(devices_of(report));
+    blocks.push_back(DocumentText{
+        "Difference between where a corner (for the projector: the light on the board) is and where the rig "
+        "says, root mean square, on poses that the calibration had not seen. Behind ±: one standard "
+        "deviation.",
+        Tone::quiet});
+    if (held_out.lengths > 0)
+        blocks.push_back(DocumentText{fmt::format(
+            "{} lengths on held-out boards: {:.3f} mm a 200 mm root mean square, {:+.3f} mm of it common to all. All "
+            "lengths are by the board's square of {:g} mm, as it was said: were it another, every scan would be too "
+            "large or too small by as much, and nothing here would show it. Measure ten squares with a calliper.",
+            held_out.lengths, held_out.length_rms_mm, held_out.length_mean_mm, report.board.square_mm)});
+    for (const std::string& change : report.changes) blocks.push_back(DocumentText{change});
+}
+
+void add_volume(const Calibration& c, std::vector<DocumentBlock>& blocks) {
+    const double full = std::max(0.02, std::ceil(c.volume->worst_mm * 50) / 50);
+    std::vector<ReportPicture> pictures;
+    int depth = 0;
+    for (RgbImage& picture : volume_pictures(*c.volume, full))
+        pictures.push_back({fmt::format("{:.0f} mm away", depth_mm(c, depth++)), "", std::move(picture)});
+    blocks.push_back(DocumentHeading{"Predicted error over the working volume"});
+    blocks.push_back(DocumentText{fmt::format(
+        "What the rig's own uncertainty does to a scanned point, one standard deviation: median {:.3f}, 95 % {:.3f}, "
+        "worst {:.3f} mm. Where light lands that is sent to a point: 95 % {:.3f} mm. Seen from the projector, nearest "
+        "first; grey: not seen.",
+        c.volume->median_mm, c.volume->p95_mm, c.volume->worst_mm, c.volume->light_p95_mm)});
+    blocks.push_back(scale_of(full));
+    blocks.push_back(figures_of(pictures, 5));
+}
+
+ReportFacts facts_of(const CalibrationReport& report) {
+    ReportFacts facts{{"Rig", report.rig_file.empty() ? "no rig file" : report.rig_file.filename().string()},
+                      {"Calibrated", report.made_on},
+                      {"Board", text_of(report.board)},
+                      {"Poses", fmt::format("{} of {}", report.calibration.bundle.rig.poses(), report.poses.size())}};
+    for (const DeviceName name : kDevices)
+        if (const std::string& serial = serial_of(report.serials, name); !serial.empty())
+            facts.emplace_back(text_of(name), "serial " + serial);
+    return facts;
+}
+
+}  // namespace
+
+Document calibration_document(const CalibrationReport& report) {
     const Calibration& c = report.calibration;
-    std::string body =
-        fmt::format("<p class=\"muted\">{}, {} of {} poses, board {}. For research; not a medical device.</p>",
-                    xml_escaped(report.made_on), c.bundle.rig.poses(), report.poses.size(),
-                    xml_escaped(text_of(report.board))) +
-        verdict(c) + "<h2>Devices</h2>" + device_rows(report);
-    body +=
-        "<p class=\"muted\">Difference between where a corner (for the projector: the light on the board) is and where "
-        "the rig "
-        "says, root mean square, "
-        "on poses that the calibration had not seen. Behind &plusmn;: one standard deviation.</p>";
-    if (c.held_out.lengths > 0)
-        body += fmt::format(
-            "<p>{} lengths on held-out boards: {:.3f} mm a 200 mm root mean square, {:+.3f} mm of it common to all. "
-            "All lengths "
-            "are by the board's square of {:g} mm, as it was said: were it another, every scan would be too large or "
-            "too small "
-            "by as much, and nothing here would show it. Measure ten squares with a calliper.</p>",
-            c.held_out.lengths, c.held_out.length_rms_mm, c.held_out.length_mean_mm, report.board.square_mm);
-    for (const std::string& change : report.changes) body += fmt::format("<p>{}</p>", xml_escaped(change));
-    if (c.volume) {
-        const double full = std::max(0.02, std::ceil(c.volume->worst_mm * 50) / 50);
-        std::vector<ReportPicture> pictures;
-        int depth = 0;
-        for (RgbImage& picture : volume_pictures(*c.volume, full))
-            pictures.push_back({fmt::format("{:.0f} mm away", depth_mm(c, depth++)), "", std::move(picture)});
-        body +=
-            fmt::format(
-                "<h2>Predicted error over the working volume</h2><p>What the rig's own uncertainty does to a scanned "
-                "point, one standard deviation: median "
-                "{:.3f}, 95 % {:.3f}, worst {:.3f} mm. Where light lands that is sent to a point: 95 % {:.3f} mm. "
-                "Colours: "
-                "dark blue 0, green {:.3f}, red {:.3f} mm; "
-                "seen from the projector, nearest first.</p>",
-                c.volume->median_mm, c.volume->p95_mm, c.volume->worst_mm, c.volume->light_p95_mm, full / 2, full) +
-            html_figures(pictures, 5);
-    }
+    Document document{"Calibration"};
+    document.verdict = verdict_of(c);
+    document.facts = with_program(facts_of(report));
+    add_devices(report, document.blocks);
+    if (c.volume) add_volume(c, document.blocks);
     std::vector<ReportPicture> where;
     for (const DeviceName name : kDevices)
         if (c.device(name))
             where.push_back(
                 {text_of(name), "A colour a pose. Where no board was, the lens is guessed.", coverage(report, name)});
-    body += "<h2>Where the board was</h2>" + html_figures(where, 3);
-    ReportFacts facts{{"Rig", report.rig_file.empty() ? "no rig file" : report.rig_file.filename().string()},
-                      {"Calibrated", report.made_on}};
-    for (const DeviceName name : kDevices)
-        if (const std::string& serial = serial_of(report.serials, name); !serial.empty())
-            facts.emplace_back(text_of(name), "serial " + serial);
-    write_safely(file, html_page("Calibration", body, facts));
+    document.blocks.push_back(DocumentHeading{"Where the board was"});
+    document.blocks.push_back(key_of_poses(report));
+    document.blocks.push_back(figures_of(where, 3));
+    document.signed_by = {"Read and accepted by"};
+    document.foot = foot_of_program();
+    return document;
 }
 
 }  // namespace planlight

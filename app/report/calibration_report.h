@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/report/document.h"
 #include "registration/calibration/calibrate_rig.h"
 
 namespace planlight {
@@ -28,8 +29,8 @@ std::string calibration_summary(const CalibrationReport& report);
 /// Every figure, the devices in the words of rig.json, and their standard deviations.
 std::string calibration_json(const CalibrationReport& report);
 
-/// One page: verdict, figures, the predicted error over the working volume, where the board was in each picture.
-void write_calibration_html(const CalibrationReport& report, const std::filesystem::path& file);
+/// Verdict, figures, the predicted error over the working volume, where the board was in each picture.
+Document calibration_document(const CalibrationReport& report);
 
 /// The predicted error as pictures, one a depth, nearest first: dark blue 0, green half of `full_scale_mm`, red all of
 /// it or more; grey not seen.

@@ -4,6 +4,7 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <ctime>
 #include <opencv2/imgcodecs.hpp>
 
@@ -17,21 +18,26 @@ constexpr const char* kStyle = R"(
 body{margin:0;background:#fff;color:#1b232c;font:15px/1.45 Inter,"DejaVu Sans",sans-serif}
 main{max-width:1100px;margin:0 auto;padding:28px 24px}
 h1{font-size:27px;margin:0 0 6px}h2{font-size:19px;margin:32px 0 6px;break-after:avoid}p{max-width:820px;margin:8px 0}
-.muted{color:#5a6673}table{border-collapse:collapse;margin:10px 0;width:100%;break-inside:avoid}
+.muted{color:#5a6673}table{border-collapse:collapse;margin:10px 0;width:100%}tr{break-inside:avoid}
 th,td{padding:5px 10px;border-bottom:1px solid #d5dbe2;text-align:right}
 th:first-child,td:first-child{text-align:left}th{color:#5a6673;font-weight:500}
-.yes{color:#0b7a43}.no{color:#b3261e}
+.good{color:#0b7a43}.look{color:#8a5300}.stop{color:#b3261e}
 .facts{display:flex;flex-wrap:wrap;gap:2px 26px;margin:0 0 14px;padding:8px 0;border-top:2px solid #1b232c;border-bottom:1px solid #d5dbe2}
 .facts div{white-space:nowrap}.facts span{color:#5a6673;margin-right:6px}
 .verdict{border:2px solid;border-radius:8px;padding:10px 16px;font-size:18px;margin:14px 0;break-inside:avoid}
-.grid{display:grid;grid-template-columns:1fr 1fr;gap:16px}
+.row{display:grid;gap:16px;margin:12px 0}
 figure{margin:0;border:1px solid #d5dbe2;border-radius:6px;overflow:hidden;display:flex;flex-direction:column;break-inside:avoid}
 figure.wide{grid-column:1/-1}figure.wide img{max-height:460px}
 figure img{width:100%;flex:1;object-fit:contain;display:block;background:#fff}figcaption{padding:8px 12px;font-size:14px}
 figcaption b{display:block}
 footer{margin-top:28px;padding-top:8px;border-top:1px solid #d5dbe2;color:#5a6673;font-size:13px}
-@page{margin:14mm}
-@media print{main{max-width:none;padding:0}body{font-size:11pt;-webkit-print-color-adjust:exact;print-color-adjust:exact}})";
+.key{display:flex;flex-wrap:wrap;gap:2px 18px;margin:6px 0;font-size:14px}.key i{display:inline-block;width:14px;height:14px;margin-right:6px;vertical-align:-2px}
+.scale{display:block;width:100%;max-width:460px;margin:10px 0}
+.sign{display:grid;grid-template-columns:5fr 3fr 6fr;gap:0 24px;margin-top:44px;break-inside:avoid}
+.sign span{border-top:1px solid #1b232c;font-size:13px;color:#5a6673;padding-top:2px}
+/* 184 mm of content is what A4 and Letter both hold within these margins. */
+@page{margin:12mm 13mm}
+@media print{main{width:184mm;max-width:100%;padding:0}figure img{max-height:220mm}body{font-size:10.5pt;-webkit-print-color-adjust:exact;print-color-adjust:exact}})";
 
 std::string base64(const std::string& bytes) {
     static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -59,22 +65,6 @@ std::string jpeg_bytes(const RgbImage& picture) {
     return {jpeg.begin(), jpeg.end()};
 }
 
-/// Drawings are sharp and small as PNG, scenes and photographs as JPEG: whichever is smaller.
-std::string embedded(const RgbImage& picture) {
-    const std::string png = png_bytes(picture), jpeg = jpeg_bytes(picture);
-    return jpeg.size() < png.size() ? "data:image/jpeg;base64," + base64(jpeg) : "data:image/png;base64," + base64(png);
-}
-
-bool is_wide(const ReportPicture& p) {
-    return p.picture.width > 2 * p.picture.height;
-}
-
-std::string figure(const ReportPicture& p, bool wide) {
-    return fmt::format("<figure{}><img alt=\"{}\" src=\"{}\"><figcaption><b>{}</b>{}</figcaption></figure>",
-                       wide ? " class=\"wide\"" : "", xml_escaped(p.title), embedded(p.picture), xml_escaped(p.title),
-                       xml_escaped(p.caption));
-}
-
 std::string now() {
     const std::time_t time = std::time(nullptr);
     std::tm local{};
@@ -97,6 +87,16 @@ std::string embedded_png(const RgbImage& picture) {
     return "data:image/png;base64," + base64(png_bytes(picture));
 }
 
+std::string smaller_jpeg(const RgbImage& picture) {
+    std::string jpeg = jpeg_bytes(picture);
+    return jpeg.size() < png_bytes(picture).size() ? jpeg : std::string();
+}
+
+std::string embedded_picture(const RgbImage& picture, bool exact) {
+    const std::string jpeg = exact ? std::string() : smaller_jpeg(picture);
+    return jpeg.empty() ? embedded_png(picture) : "data:image/jpeg;base64," + base64(jpeg);
+}
+
 ReportFacts facts_of(const Case& the_case) {
     const CaseNames& names = the_case.names;
     std::string plan = names.plan + (names.plan_version.empty() ? "" : ", version " + names.plan_version);
@@ -109,37 +109,81 @@ ReportFacts facts_of(const Case& the_case) {
             {"Plan", plan}};
 }
 
-std::string html_figures(const std::vector<ReportPicture>& pictures, int columns) {
-    std::string html =
-        columns == 0 || columns == 2
-            ? "<div class=\"grid\">"
-            : fmt::format("<div class=\"grid\" style=\"grid-template-columns:repeat({},1fr)\">", columns);
-    std::size_t in_row = 0;
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
-        const bool last_of_row = i + 1 == pictures.size() || (columns != 1 && is_wide(pictures[i + 1]));
-        const bool wide = columns < 3 && (is_wide(pictures[i]) || (in_row == 0 && last_of_row));
-        html += figure(pictures[i], wide);
-        in_row = wide ? 0 : 1 - in_row;
-    }
-    return html + "</div>";
+std::string program_name() {
+    return std::string("Planlight ") + PLANLIGHT_VERSION;
 }
 
-std::string html_page(const std::string& title, const std::string& body, const ReportFacts& facts) {
+std::string lines_to_sign(const std::vector<std::string>& who) {
+    std::string html;
+    for (const std::string& one : who)
+        html += fmt::format("<div class=\"sign\"><span>{}</span><span>Date, time</span><span>Signature</span></div>",
+                            xml_escaped(one));
+    return html;
+}
+
+namespace {
+
+/// Of the style: "good", "look", "stop".
+const char* class_of(PageVerdict::Kind kind) {
+    constexpr const char* kClasses[] = {"good", "look", "stop"};
+    return kClasses[static_cast<std::size_t>(kind)];
+}
+
+std::string verdict_frame(const PageVerdict& verdict) {
+    if (verdict.words.empty()) return {};
+    return fmt::format("<div class=\"verdict {}\">{} {}</div>", class_of(verdict.kind), sign_of(verdict.kind),
+                       xml_escaped(verdict.words));
+}
+
+std::string verdict_html(const PageVerdict& verdict) {
+    std::string html = verdict_frame(verdict);
+    for (const std::string& reason : verdict.reasons)
+        html += fmt::format("<p class=\"{}\">{}</p>", class_of(verdict.kind), xml_escaped(reason));
+    return html;
+}
+
+std::string facts_html(const ReportFacts& facts) {
     std::string about;
-    const auto add = [&](const std::string& name, const std::string& value) {
+    for (const auto& [name, value] : with_program(facts))
         if (!value.empty()) about += fmt::format("<div><span>{}</span>{}</div>", xml_escaped(name), xml_escaped(value));
+    return "<div class=\"facts\">" + about + "</div>";
+}
+
+}  // namespace
+
+const char* sign_of(PageVerdict::Kind kind) {
+    constexpr const char* kSigns[] = {"✓", "⚠", "✗"};
+    return kSigns[static_cast<std::size_t>(kind)];
+}
+
+std::string verdict_as_list(const PageVerdict& verdict) {
+    std::string html = verdict_frame(verdict);
+    if (verdict.reasons.empty()) return html;
+    html += "<ul>";
+    for (const std::string& reason : verdict.reasons) html += "<li>" + xml_escaped(reason) + "</li>";
+    return html + "</ul>";
+}
+
+ReportFacts with_program(ReportFacts facts) {
+    const auto add = [&](const char* name, const std::string& value) {
+        const bool named =
+            std::any_of(facts.begin(), facts.end(), [&](const auto& fact) { return fact.first == name; });
+        if (!named) facts.emplace_back(name, value);
     };
-    for (const auto& [name, value] : facts) add(name, value);
-    // Whoever prints a page of somebody's session is not who operated.
-    const bool named =
-        std::any_of(facts.begin(), facts.end(), [](const auto& fact) { return fact.first == "Operator"; });
-    if (!named) add("Operator", operator_name());
-    add("Printed", now());
+    add("Operator", operator_name());  // whoever prints a page of somebody's session is not who operated
+    add("Program", program_name());
+    add("This page made", now());
+    return facts;
+}
+
+std::string html_page(const std::string& title, const PageVerdict& verdict, const ReportFacts& facts,
+                      const std::string& body, const std::vector<std::string>& signed_by) {
     return fmt::format(
         "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{}</title><style>{}</style></head>"
-        "<body><main><h1>{}</h1><div class=\"facts\">{}</div>{}<footer>Planlight {}. For research; not a medical "
+        "<body><main><h1>{}</h1>{}{}{}{}<footer>{}. For research; not a medical "
         "device.</footer></main></body></html>\n",
-        xml_escaped(title), kStyle, xml_escaped(title), about, body, PLANLIGHT_VERSION);
+        xml_escaped(title), kStyle, xml_escaped(title), verdict_html(verdict), facts_html(facts), body,
+        lines_to_sign(signed_by), program_name());
 }
 
 }  // namespace planlight

@@ -21,14 +21,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
+}  // namespace
+
 void check_case(const RecordingHead& head, const Case& the_case, const fs::path& recording) {
     const CaseName name = name_of(the_case);
     if (head.volume_hash == name.volume_hash && head.mesh_hash == name.mesh_hash &&
         head.plan_hash == the_case.plan_hash)
         return;
-    throw InputError(recording, fmt::format("is of the case {}, and this is the case {}", head.case_code, name.code),
+    throw InputError(recording,
+                     fmt::format("is of the case {}, and this is the case {}{}", head.case_code, name.code,
+                                 head.case_code == name.code ? ", whose skin or plan is another" : ""),
                      "Name the case that was used with --case.");
 }
+
+namespace {
 
 /// The strokes as this camera sees them: what faces it.
 std::vector<std::vector<Eigen::Vector2d>> seen_by(const CameraModel& camera, const PlanDrawing& drawing,

@@ -39,6 +39,9 @@ struct MomentComparison {
     SceneView by_projector;                                     ///< the head as the light fell on it
 };
 
+/// Throws InputError where the recording is of another case, or of this one with another skin or plan.
+void check_case(const RecordingHead& head, const Case& the_case, const std::filesystem::path& recording);
+
 /// Compares plan and light at frames of one recording. What it made for a match it keeps for the next frame.
 class MomentComparer {
 public:

@@ -61,6 +61,7 @@ RgbImage compared_picture(const MomentComparison& moment, const GrayImage& pictu
 }
 
 void compare_moment(OperationFacts& facts, const std::filesystem::path& recording, const Case& the_case) {
+    check_case(facts.head, the_case, recording);
     if (!facts.moment) return;
     OperationMoment& shown = *facts.moment;
     const RecordingTimeLine line = time_line_of(recording);

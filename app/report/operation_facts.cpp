@@ -8,6 +8,7 @@
 
 #include "app/recording/match_fate.h"
 #include "app/recording/recording_head.h"
+#include "app/recording/session_events.h"
 #include "app/report/clearance_json.h"
 #include "app/report/operation_report.h"
 #include "app/without_numbers.h"
@@ -73,7 +74,8 @@ private:
         origin_ = at;
         at_s_ = 0;
         facts_.room = room.value("name", "");
-        facts_.simulated = room.value("simulated", false);
+        facts_.room_entered_utc = room.value("utc", "");
+        facts_.room_kind = session_events::room_kind_of(room);
         facts_.rig_hash = room.value("rig_hash", "");
         facts_.rig_made_on = room.at("rig").value("made_on", "");
         for (const char* device : {"left_camera", "right_camera", "projector"})
@@ -95,7 +97,9 @@ private:
     void take_confirming_press() {
         press_at_s_ = at_s_;
         if (by_program_.what.empty() || at_s_ - by_program_.at_s > kPressBeside_s) return;
-        facts_.said[by_program_.place].what = "By a press " + by_program_.what;
+        const RecordingHead& head = facts_.head;
+        facts_.said[by_program_.place].what =
+            "By a press " + (head.operator_named ? "(" + head.operator_name + ") " : "") + by_program_.what;
         if (by_program_.verified) --facts_.verified_by_program;
         by_program_ = {}, press_at_s_.reset();
     }

@@ -5,155 +5,187 @@
 #include <algorithm>
 
 #include "app/evaluation/distribution.h"
-#include "app/report/pdf_page.h"
+#include "app/local_time.h"
+#include "app/report/document.h"
 #include "app/report/plan_facts.h"
 #include "app/windows/camera_picture.h"
 
 namespace planlight {
 namespace {
 
-void add_facts(PdfPages& pdf, const OperationFacts& facts) {
+ReportFacts facts_of(const OperationFacts& facts) {
     const RecordingHead& head = facts.head;
-    std::vector<std::vector<std::string>> rows{{"", ""}};
-    const auto row = [&](const char* name, const std::string& value) {
-        if (!value.empty()) rows.push_back({name, value});
-    };
-    row("Case", head.case_title);
-    row("Code", head.case_code);
-    row("Plan", head.plan_name + (head.plan_version.empty() ? "" : ", version " + head.plan_version));
-    row("Room", facts.room);
-    row("Rig calibrated", facts.rig_made_on);
-    row("Began", head.began_utc + ", lasted " + duration_text(facts.lasted_s) + " (room clock)");
-    row("Operator, computer", head.operator_name + ", " + head.computer);
-    row("Program", "Planlight " + head.program);
-    pdf.table(rows, {0.22, 0.78});
+    return {{"Case", head.case_title},
+            {"Code", head.case_code},
+            {"Plan", head.plan_name + (head.plan_version.empty() ? "" : ", version " + head.plan_version)},
+            {"Room", facts.room},
+            {"Rig calibrated", facts.rig_made_on},
+            {"Began", head.began_utc},
+            {"Lasted", duration_text(facts.lasted_s) + " (room clock)"},
+            {"Room clock 0:00:00", utc_and_local_time(facts.room_entered_utc)},
+            {"Operator", operator_text(head)},
+            {"Computer", head.computer},
+            {"Settings", settings_in_words(head)},
+            {"Program", "Planlight " + head.program}};
 }
 
-void add_items(PdfPages& pdf, const OperationFacts& facts) {
-    pdf.heading("What was shown, and how far off it was (mm)");
+Tone tone_of(const std::string& sign) {
+    return sign.empty() ? Tone::plain : sign == "⚠" ? Tone::look : Tone::stop;
+}
+
+DocumentTable items_of(const OperationFacts& facts) {
     const bool with_risk = any_risk(facts);
-    std::vector<std::vector<std::string>> rows{
-        {"Plan item", "shown (room clock)", "for", "predicted, 95 %", "measured: median", "95 %", "worst", "times"}};
-    std::vector<double> shares{0.24, 0.18, 0.1, 0.12, 0.12, 0.08, 0.08, 0.08};
-    if (with_risk) {
-        rows[0].insert(rows[0].begin() + 1, "next risk structure, as planned");
-        shares = {0.17, 0.18, 0.17, 0.09, 0.1, 0.09, 0.07, 0.07, 0.06};
-    }
+    DocumentTable table{{{"Plan item", DocumentTable::Kind::name},
+                         {"shown (room clock)"},
+                         {"for"},
+                         {"predicted, 95 %"},
+                         {"measured: median"},
+                         {"95 %"},
+                         {"worst"},
+                         {"times"}},
+                        {},
+                        true};
+    if (with_risk) table.columns.insert(table.columns.begin() + 1, {"next risk structure, as planned"});
     for (const OperationItem& item : facts.items) {
         const Distribution d = distribution_of(item.measured_mm);
         const auto mm = [&](double value) {
-            return d.count > 0 ? fmt::format("{:.2f} {}", value, sign_of(value)) : std::string("-");
+            const std::string sign = d.count > 0 ? sign_of(value) : std::string();
+            return DocumentText{d.count > 0 ? fmt::format("{:.2f} {}", value, sign) : std::string("-"), tone_of(sign)};
         };
-        rows.push_back({item.name, shown_text(item, facts), duration_text(item.shown_s),
-                        item.predicted_mm ? fmt::format("{:.2f}", *item.predicted_mm) : "not known", mm(d.median),
-                        mm(d.p95), mm(d.worst), std::to_string(d.count)});
-        if (with_risk) rows.back().insert(rows.back().begin() + 1, risk_in_words(item.risk));
+        table.rows.push_back({{item.name},
+                              {shown_text(item, facts)},
+                              {duration_text(item.shown_s)},
+                              {item.predicted_mm ? fmt::format("{:.2f}", *item.predicted_mm) : "not known"},
+                              mm(d.median),
+                              mm(d.p95),
+                              mm(d.worst),
+                              {std::to_string(d.count)}});
+        if (with_risk) table.rows.back().insert(table.rows.back().begin() + 1, {risk_in_words(item.risk)});
     }
-    if (facts.items.empty()) rows.push_back({"No match was found: nothing could be shown."});
-    pdf.table(rows, shares);
-    pdf.paragraph(kWhatIsMeasured);
-    if (const std::string f2554 = in_terms_of_f2554(facts); !f2554.empty()) pdf.paragraph(f2554);
+    return table;
 }
 
-void add_matches(PdfPages& pdf, const OperationFacts& facts) {
-    pdf.heading("Matches");
-    if (facts.matches.empty()) {
-        pdf.paragraph("None.");
-        return;
-    }
-    std::vector<std::vector<std::string>> rows{{"Room clock", "Verdict", "Points of skin", "Residual", "Why"}};
+void add_items(const OperationFacts& facts, std::vector<DocumentBlock>& blocks) {
+    blocks.push_back(DocumentHeading{"What was shown, and how far off it was (mm)"});
+    blocks.push_back(items_of(facts));
+    if (facts.items.empty()) blocks.push_back(DocumentText{"No match was found: nothing could be shown."});
+    blocks.push_back(DocumentText{kWhatIsMeasured, Tone::quiet});
+    if (const std::string f2554 = in_terms_of_f2554(facts); !f2554.empty())
+        blocks.push_back(DocumentText{f2554, Tone::quiet});
+    blocks.push_back(DocumentText{fmt::format("Light for {}: {} of it aligned, {} to be looked at. {} updates.",
+                                              duration_text(facts.lit_s), duration_text(facts.aligned_s),
+                                              duration_text(facts.look_s), facts.updates)});
+}
+
+DocumentTable matches_of(const OperationFacts& facts) {
+    DocumentTable table{{{"Room clock"}, {"Verdict"}, {"Points of skin"}, {"Residual"}, {"Why"}}, {}, true};
     for (const OperationMatch& match : facts.matches) {
         std::string why;
         for (const std::string& reason : match.reasons) why += (why.empty() ? "" : " ") + reason;
-        rows.push_back({clock_text(match.at_s), match.verdict, std::to_string(match.points),
-                        match.residual_rms_mm ? fmt::format("{:.2f} mm rms", *match.residual_rms_mm) : "not known",
-                        why});
+        table.rows.push_back(
+            {{clock_text(match.at_s)},
+             {match.verdict},
+             {std::to_string(match.points)},
+             {match.residual_rms_mm ? fmt::format("{:.2f} mm rms", *match.residual_rms_mm) : "not known"},
+             {why}});
     }
-    pdf.table(rows, {0.12, 0.1, 0.14, 0.16, 0.48});
+    return table;
 }
 
-void add_course(PdfPages& pdf, const OperationFacts& facts) {
+void add_course(const OperationFacts& facts, std::vector<DocumentBlock>& blocks) {
     if (facts.course.size() < 2) return;
     constexpr double kBreak_s = 1.5, kMost_mm = 3;
+    constexpr Rgb kAligned{20, 102, 58}, kLook{208, 135, 0}, kStop{163, 18, 31}, kSeen{0x15, 0x40, 0x6b};
     const bool long_one = facts.lasted_s > 300;
-    const double unit_s = long_one ? 60 : 1;
-    PdfPages::Chart chart;
-    chart.to_x = std::max(1.0, facts.lasted_s / unit_s);
-    chart.to_y = kMost_mm;
-    chart.x_label = long_one ? "room clock, minutes" : "room clock, s";
-    chart.y_label = "light off its place (95 %), mm; green: aligned, amber: to be looked at";
+    const double unit_s = long_one ? 60 : 1, end = std::max(1.0, facts.lasted_s / unit_s);
+    Chart chart({0, end, long_one ? "room clock, minutes" : "room clock, s", 8}, {0, kMost_mm, "mm (95 %)", 5}, 1100,
+                300);
+    Chart::Points dots;
     for (std::size_t i = 0; i < facts.course.size(); ++i) {
         const auto& sample = facts.course[i];
         const double until_s =
             std::min(i + 1 < facts.course.size() ? facts.course[i + 1].at_s : facts.lasted_s, sample.at_s + kBreak_s);
-        chart.bars.push_back({sample.at_s / unit_s, until_s / unit_s, sample.aligned ? 0.2 : 0.1,
-                              sample.aligned ? Rgb{20, 102, 58} : Rgb{208, 135, 0}});
-        if (sample.off_mm >= 0) chart.dots.emplace_back(sample.at_s / unit_s, sample.off_mm);
+        chart.bar(sample.at_s / unit_s, until_s / unit_s, sample.aligned ? 0.2 : 0.1,
+                  sample.aligned ? kAligned : kLook);
+        if (sample.off_mm >= 0) dots.emplace_back(sample.at_s / unit_s, std::min(sample.off_mm, kMost_mm));
     }
-    chart.levels = {{kOperationLook_mm, {208, 135, 0}}, {kOperationStop_mm, {163, 18, 31}}};
-    pdf.heading("The light over time", 160);
-    pdf.chart(chart);
+    chart.line({{0, kOperationLook_mm}, {end, kOperationLook_mm}}, kLook, 1);
+    chart.line({{0, kOperationStop_mm}, {end, kOperationStop_mm}}, kStop, 1);
+    chart.dots(dots, kSeen);
+    blocks.push_back(DocumentHeading{"The light over time"});
+    blocks.push_back(DocumentFigures{{{"How far the light was off its place",
+                                       "Bars at the foot: high and green aligned, low and amber to be looked at, none "
+                                       "dark. Lines: at 1 mm the light "
+                                       "is not trusted, at 2 mm it goes out; what is above 3 mm stands at 3.",
+                                       chart}}});
 }
 
-void add_events(PdfPages& pdf, const std::string& title, const std::vector<OperationEvent>& events) {
-    pdf.heading(title);
-    if (events.empty()) {
-        pdf.paragraph("None.");
-        return;
-    }
-    std::vector<std::vector<std::string>> rows{{"Room clock", "What"}};
-    for (const OperationEvent& event : events) rows.push_back({clock_text(event.at_s), event.what});
-    pdf.table(rows, {0.14, 0.86});
+void add_moment(const OperationMoment& m, std::vector<DocumentBlock>& blocks) {
+    const bool compared = !m.compared[0].empty();
+    blocks.push_back(DocumentHeading{"At " + clock_text(m.at_s) + " (room clock)"});
+    DocumentFigures figures{{{"Left camera", "", compared ? m.compared[0] : rgb_of(brightened(m.left))},
+                             {"Right camera", "", compared ? m.compared[1] : rgb_of(brightened(m.right))}}};
+    if (!m.light.empty()) figures.figures.push_back({"What the projector was given", "", m.light});
+    figures.columns = static_cast<int>(figures.figures.size());
+    blocks.push_back(figures);
+    if (!m.compared_words.empty()) blocks.push_back(DocumentText{(compared ? kWhatCirclesSay : "") + m.compared_words});
+}
+
+/// Or "None." below the heading.
+void add_table(const std::string& title, DocumentTable table, std::vector<DocumentBlock>& blocks) {
+    blocks.push_back(DocumentHeading{title});
+    if (table.rows.empty())
+        blocks.push_back(DocumentText{"None."});
+    else
+        blocks.push_back(std::move(table));
+}
+
+DocumentTable darkness_of(const OperationFacts& facts) {
+    DocumentTable table{{{"Because"}, {"times"}, {"for"}}, {}};
+    for (const auto& [reason, how] : facts.dark)
+        table.rows.push_back({{reason}, {std::to_string(how.first)}, {duration_text(how.second)}});
+    return table;
+}
+
+DocumentTable events_of(const std::vector<OperationEvent>& events) {
+    DocumentTable table{{{"Room clock"}, {"What"}}, {}, true};
+    for (const OperationEvent& event : events) table.rows.push_back({{clock_text(event.at_s)}, {event.what}});
+    return table;
+}
+
+DocumentTable hashes_of(const OperationFacts& facts) {
+    return {{{""}, {""}},
+            {{{"Recording"}, {facts.recording_hash}},
+             {{"Volume"}, {facts.head.volume_hash}},
+             {{"Skin"}, {facts.head.mesh_hash}},
+             {{"Plan"}, {facts.head.plan_hash}},
+             {{"Rig"}, {facts.rig_hash}},
+             {{"Program"}, {facts.head.program_hash}}},
+            true};
+}
+
+PageVerdict page_verdict(const OperationVerdict& verdict) {
+    return {static_cast<PageVerdict::Kind>(verdict.kind), verdict.sentence, verdict.reasons};
 }
 
 }  // namespace
 
-std::string operation_pdf(const OperationFacts& facts) {
-    PdfPages pdf("Operation: " + facts.head.case_title,
-                 fmt::format("Case {}, {}. Planlight {}. For research; not a medical device.", facts.head.case_code,
-                             facts.head.began_utc, facts.head.program));
-    const OperationVerdict verdict = verdict_of(facts);
-    pdf.heading(sign_of(verdict.kind) + " " + verdict.sentence);
-    for (const std::string& reason : verdict.reasons) pdf.paragraph("- " + reason);
-    add_facts(pdf, facts);
-    add_items(pdf, facts);
-    pdf.paragraph(fmt::format("Light for {}: {} of it aligned, {} to be looked at. {} updates.",
-                              duration_text(facts.lit_s), duration_text(facts.aligned_s), duration_text(facts.look_s),
-                              facts.updates));
-    add_course(pdf, facts);
-    if (facts.moment) {
-        pdf.heading("At " + clock_text(facts.moment->at_s) + " (room clock)", 180);
-        const OperationMoment& m = *facts.moment;
-        const bool compared = !m.compared[0].empty();
-        std::vector<std::pair<std::string, RgbImage>> row{
-            {"Left camera", compared ? m.compared[0] : rgb_of(brightened(m.left))},
-            {"Right camera", compared ? m.compared[1] : rgb_of(brightened(m.right))}};
-        if (!m.light.empty()) row.emplace_back("What the projector was given", m.light);
-        pdf.pictures(row);
-        if (!m.compared_words.empty()) pdf.paragraph((compared ? kWhatCirclesSay : "") + m.compared_words);
-    }
-    if (!facts.dark.empty()) {
-        pdf.heading("Dark by itself");
-        std::vector<std::vector<std::string>> rows{{"Because", "times", "for"}};
-        for (const auto& [reason, how] : facts.dark)
-            rows.push_back({reason, std::to_string(how.first), duration_text(how.second)});
-        pdf.table(rows, {0.7, 0.15, 0.15});
-    }
-    add_matches(pdf, facts);
-    add_events(pdf, "What people said and did", facts.said);
-    add_events(pdf, "Refused, or failed", facts.refusals);
-    pdf.heading("Hashes (XXH3-128)");
-    pdf.table({{"of", ""},
-               {"Recording", facts.recording_hash},
-               {"Volume", facts.head.volume_hash},
-               {"Skin", facts.head.mesh_hash},
-               {"Plan", facts.head.plan_hash},
-               {"Rig", facts.rig_hash},
-               {"Program", facts.head.program_hash}},
-              {0.22, 0.78});
-    pdf.heading(" ", 30);
-    pdf.paragraph("Name  ____________________      Date  ______________      Signature  ____________________");
-    return pdf.bytes();
+std::string operation_pdf(const OperationFacts& facts, PaperSize paper) {
+    Document document{"Operation: " + facts.head.case_title};
+    document.verdict = page_verdict(verdict_of(facts));
+    document.facts = facts_of(facts);
+    add_items(facts, document.blocks);
+    add_course(facts, document.blocks);
+    if (facts.moment) add_moment(*facts.moment, document.blocks);
+    if (!facts.dark.empty()) add_table("Dark by itself", darkness_of(facts), document.blocks);
+    add_table("Matches", matches_of(facts), document.blocks);
+    add_table("What people said and did", events_of(facts.said), document.blocks);
+    add_table("Refused, or failed", events_of(facts.refusals), document.blocks);
+    add_table("Hashes (XXH3-128)", hashes_of(facts), document.blocks);
+    document.signed_by = {"Name"};
+    document.foot = fmt::format("Case {}, {}. Planlight {}. For research; not a medical device.", facts.head.case_code,
+                                facts.head.began_utc, facts.head.program);
+    return pdf_of(document, paper);
 }
 
 }  // namespace planlight

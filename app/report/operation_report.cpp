@@ -5,10 +5,11 @@
 #include <algorithm>
 
 #include "app/evaluation/distribution.h"
+#include "app/local_time.h"
+#include "app/report/chart.h"
 #include "app/report/html_page.h"
 #include "app/report/paper_page.h"
 #include "app/report/plan_facts.h"
-#include "app/report/svg_chart.h"
 #include "app/windows/camera_picture.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
@@ -117,10 +118,10 @@ std::string course_html(const OperationFacts& facts) {
     const double unit_s = long_one ? 60 : 1;
     double most_mm = 2.2;
     for (const auto& sample : facts.course) most_mm = std::max(most_mm, std::min(5.0, sample.off_mm));
-    SvgChart chart({0, std::max(1.0, facts.lasted_s / unit_s), long_one ? "room clock, minutes" : "room clock, s", 8},
-                   {0, most_mm, "light off its place (95 %), mm", 5}, 1100, 185);
+    Chart chart({0, std::max(1.0, facts.lasted_s / unit_s), long_one ? "room clock, minutes" : "room clock, s", 8},
+                {0, most_mm, "light off its place (95 %), mm", 5}, 1100, 185);
     const std::size_t join = facts.course.size() / kMostPlaces + 1;
-    SvgChart::Points points;
+    Chart::Points points;
     for (std::size_t i = 0; i < facts.course.size(); i += join) {
         const auto& first = facts.course[i];
         const std::size_t end = std::min(i + join, facts.course.size());
@@ -132,13 +133,14 @@ std::string course_html(const OperationFacts& facts) {
         }
         const double until_s = std::min(end < facts.course.size() ? facts.course[end].at_s : facts.lasted_s,
                                         facts.course[end - 1].at_s + kBreak_s);
-        chart.bar(first.at_s / unit_s, until_s / unit_s, aligned ? 0.16 : 0.08, aligned ? "#14663a" : "#d08700");
+        chart.bar(first.at_s / unit_s, until_s / unit_s, aligned ? 0.16 : 0.08,
+                  aligned ? Rgb{0x14, 0x66, 0x3a} : Rgb{0xd0, 0x87, 0x00});
         if (off_mm >= 0) points.emplace_back(first.at_s / unit_s, std::min(off_mm, most_mm));
     }
-    chart.line({{0, kLook_mm}, {facts.lasted_s / unit_s, kLook_mm}}, "#d08700", 1);
-    chart.line({{0, kStop_mm}, {facts.lasted_s / unit_s, kStop_mm}}, "#a3121f", 1);
-    chart.dots(points, "#15406b");
-    return "<h2>The light over time</h2>" + chart.text() +
+    chart.line({{0, kLook_mm}, {facts.lasted_s / unit_s, kLook_mm}}, Rgb{0xd0, 0x87, 0x00}, 1);
+    chart.line({{0, kStop_mm}, {facts.lasted_s / unit_s, kStop_mm}}, Rgb{0xa3, 0x12, 0x1f}, 1);
+    chart.dots(points, Rgb{0x15, 0x40, 0x6b});
+    return "<h2>The light over time</h2>" + chart.svg() +
            "<p class=\"muted\">Points: the worst of half a second or more. Bars at the foot: high and green aligned, "
            "low and "
            "amber to be looked at, none dark. Lines: at 1 mm the light is not trusted, at 2 mm it goes out.</p>";
@@ -213,9 +215,11 @@ std::string facts_html(const OperationFacts& facts) {
     const bool titled = head.case_title.find(head.case_code) == std::string::npos;
     return "<div class=\"two\"><table>" + row("Case", titled ? head.case_title : "") + row("Code", head.case_code) +
            row("Plan", head.plan_name + (head.plan_version.empty() ? "" : ", version " + head.plan_version)) +
-           row("Room", facts.room) + row("Rig calibrated", utc_text(facts.rig_made_on)) + "</table><table>" +
-           row("Began", utc_text(head.began_utc)) + row("Lasted", duration_text(facts.lasted_s) + " (room clock)") +
-           row("Operator", head.operator_name) + row("Computer", head.computer) +
+           row("Room", facts.room) + row("Rig calibrated", utc_text(facts.rig_made_on)) +
+           row("Settings", settings_in_words(head)) + "</table><table>" + row("Began", utc_text(head.began_utc)) +
+           row("Lasted", duration_text(facts.lasted_s) + " (room clock)") +
+           row("Room clock 0:00:00", utc_and_local_time(facts.room_entered_utc)) +
+           row("Operator", operator_text(head)) + row("Computer", head.computer) +
            row("Program", "Planlight " + head.program) + "</table></div>";
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/recording/session_recorder.h"
+#include "app/room_kind.h"
 #include "planning_io/recording/recording_reader.h"
 #include "projection/clearance.h"
 
@@ -55,8 +56,10 @@ struct OperationMoment {
 struct OperationFacts {
     RecordingHead head;
     std::string recording_hash, file;
-    bool room_entered = false, simulated = false;
+    bool room_entered = false;
+    RoomKind room_kind = RoomKind::real;
     std::string room, rig_hash, rig_made_on;
+    std::string room_entered_utc;  ///< what 0:00:00 of the room clock was; empty: not told
     std::vector<std::string> serials;
     double lasted_s = 0;
     double lit_s = 0, aligned_s = 0, look_s = 0;  ///< light of the plan; that of a single landmark does not count
@@ -95,6 +98,12 @@ inline constexpr double kOperationLook_mm = 1, kOperationStop_mm = 2;
 std::string duration_text(double s);
 /// Of the room's clock: "0:03:12".
 std::string clock_text(double s);
+
+/// By which limits the light was judged, and how late it was held to be; empty: the recording does not tell.
+std::string settings_in_words(const RecordingHead& head);
+
+/// Who operated, or under which account the program ran; empty where it was left out.
+std::string operator_text(const RecordingHead& head);
 
 /// When an item was shown, first to last, or why nothing is known of it.
 std::string shown_text(const OperationItem& item, const OperationFacts& facts);

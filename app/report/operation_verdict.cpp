@@ -103,7 +103,9 @@ OperationVerdict verdict_of(const OperationFacts& facts) {
         verdict.kind = std::max(verdict.kind, to);
         verdict.reasons.push_back(reason);
     };
-    if (facts.simulated) verdict.reasons.push_back("A simulated room: no patient was there.");
+    if (facts.room_kind == RoomKind::simulated) verdict.reasons.push_back("A simulated room: no patient was there.");
+    if (facts.room_kind == RoomKind::recorded)
+        verdict.reasons.push_back("Recorded pictures in place of cameras: no patient was there.");
     std::vector<std::string> off, unseen, not_shown, not_known;
     for (const OperationItem* item : worst_first(facts.items)) {
         const Distribution d = distribution_of(item->measured_mm);
@@ -187,6 +189,25 @@ std::string in_terms_of_f2554(const OperationFacts& facts) {
         of.count, of.mean_mm, of.deviation_mm, of.rms_mm, of.worst_mm);
 }
 
+std::string operator_text(const RecordingHead& head) {
+    const bool account = !head.operator_named && !head.operator_name.empty();
+    return head.operator_name + (account ? " (account of the computer)" : "");
+}
+
+std::string settings_in_words(const RecordingHead& head) {
+    const Json settings = Json::parse(head.settings, nullptr, false);
+    if (!settings.is_object()) return {};
+    try {
+        const Json& gate = settings.at("gate");
+        return fmt::format("gate: amber above {:g} mm, dark above {:g} mm; projector latency {:g} ms ({})",
+                           gate.at("warn_mm").get<double>(), gate.at("stop_mm").get<double>(),
+                           settings.at("light_delay_ms").get<double>(),
+                           settings.at("light_delay_from").get<std::string>());
+    } catch (const Json::exception&) {
+        return {};  // another program's: they stand in the figures as they are
+    }
+}
+
 std::string operation_json(const OperationFacts& facts) {
     const OperationVerdict verdict = verdict_of(facts);
     const RecordingHead& head = facts.head;
@@ -200,11 +221,15 @@ std::string operation_json(const OperationFacts& facts) {
                  {"plan", head.plan_name},
                  {"plan_version", head.plan_version},
                  {"room", facts.room},
-                 {"simulated", facts.simulated},
+                 {"simulated", facts.room_kind == RoomKind::simulated},
+                 {"recorded", facts.room_kind == RoomKind::recorded},
                  {"began", head.began_utc},
+                 {"room_entered", facts.room_entered_utc},
                  {"operator", head.operator_name},
+                 {"operator_named", head.operator_named},
                  {"computer", head.computer},
                  {"program", head.program},
+                 {"settings", head.settings.empty() ? Json() : Json::parse(head.settings)},
                  {"rig_made_on", facts.rig_made_on},
                  {"serials", facts.serials},
                  {"hashes",

@@ -41,6 +41,9 @@ figure img{width:100%;display:block;border:.2mm solid #c3c8d0}
 .fit>.row{flex:0 1 68mm;min-height:32mm;grid-template-rows:minmax(0,1fr)}
 .fit figure{display:flex;flex-direction:column;min-height:0}.fit figure img{flex:1;min-height:0;object-fit:contain}}
 figcaption{font-size:7.5pt;line-height:1.25;padding-top:.6mm;color:#353b45}
+.key{display:flex;flex-wrap:wrap;gap:0 4mm;margin:.8mm 0;color:#5b6470;font-size:8pt}
+.key i{display:inline-block;width:3mm;height:3mm;margin-right:1.5mm;vertical-align:-.4mm}
+.scale{display:block;width:100%;max-width:90mm;margin:1mm 0}
 .sign{display:grid;grid-template-columns:5fr 3fr 6fr;gap:0 6mm;margin-top:7.5mm;break-inside:avoid}
 .sign span{border-top:.25mm solid #15181d;font-size:7.5pt;color:#5b6470;padding-top:.5mm})";
 

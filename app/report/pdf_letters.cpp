@@ -22,7 +22,9 @@ bool is_plain(char32_t code) {
                          {0x2000, 0x2027},
                          {0x202F, 0x2061},
                          {0x2070, 0x23CF},
-                         {0x25A0, 0x25FF}});
+                         {0x25A0, 0x25FF},
+                         {0x26A0, 0x26A0},
+                         {0x2713, 0x2717}});
 }
 
 /// Hebrew, Arabic and their neighbours, and their forms for old programs.

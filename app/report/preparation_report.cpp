@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/report/paper_page.h"
 #include "app/report/plan_facts.h"
 #include "app/report/preparation_json.h"
 #include "app/windows/distance_colours.h"
@@ -17,22 +16,6 @@ namespace planlight {
 namespace {
 
 constexpr std::size_t kPiecesListed = 5;
-
-/// A row of a table of two columns; none where there is nothing to say.
-std::string row(const std::string& name, const std::string& value) {
-    return value.empty() ? "" : fmt::format("<tr><td>{}</td><td>{}</td></tr>", name, xml_escaped(value));
-}
-
-std::string figure(const ReportPicture& p) {
-    return fmt::format("<figure><img alt=\"{}\" src=\"{}\"><figcaption><b>{}</b> {}</figcaption></figure>",
-                       xml_escaped(p.title), embedded_png(p.picture), xml_escaped(p.title), xml_escaped(p.caption));
-}
-
-std::string figures_in_a_row(const std::vector<ReportPicture>& pictures, int columns) {
-    std::string html = fmt::format("<div class=\"row\" style=\"grid-template-columns:repeat({},1fr)\">", columns);
-    for (const auto& picture : pictures) html += figure(picture);
-    return html + "</div>";
-}
 
 /// What is said of several items of the plan is said once: "A; B; C: it has no depth".
 std::vector<std::string> gathered(const std::vector<std::string>& warnings, const PlanDrawing& drawing) {
@@ -55,24 +38,15 @@ std::vector<std::string> gathered(const std::vector<std::string>& warnings, cons
     return result;
 }
 
-std::string warnings_html(const std::vector<std::string>& warnings) {
+PageVerdict verdict_of(const std::vector<std::string>& warnings) {
     if (warnings.empty())
-        return "<div class=\"verdict good\">&#10003; Prepared without a warning. The pictures below decide whether it "
-               "may be used.</div>";
-    std::string html = fmt::format(
-        "<div class=\"verdict look\">&#9888; Prepared with {}. Look at each before this "
-        "is used.</div><ul>",
-        counted(static_cast<long long>(warnings.size()), "warning"));
-    for (const auto& warning : warnings) html += fmt::format("<li>{}</li>", xml_escaped(warning));
-    return html + "</ul>";
-}
-
-/// Whether the first sheet can be one page, with pictures that are no smaller than can be judged.
-bool fit_on_a_page(const std::vector<std::string>& warnings) {
-    constexpr std::size_t kLine = 105, kMostLines = 13;
-    std::size_t lines = 0;
-    for (const auto& warning : warnings) lines += 1 + warning.size() / kLine;
-    return lines <= kMostLines;
+        return {PageVerdict::Kind::good,
+                "Prepared without a warning. The pictures below decide whether it may be used.",
+                {}};
+    return {PageVerdict::Kind::look,
+            fmt::format("Prepared with {}. Look at each before this is used.",
+                        counted(static_cast<long long>(warnings.size()), "warning")),
+            warnings};
 }
 
 std::string contents_of(const Plan& plan) {
@@ -117,43 +91,54 @@ std::string series_of(const CaseNames& names) {
     return names.series.empty() ? "of " + names.series_date : names.series + ", " + names.series_date;
 }
 
-std::string identity_html(const Preparation& done) {
+ReportFacts facts_of_plan(const Preparation& done) {
     const Case& c = done.prepared;
-    const VolumeFacts& v = done.volume;
-    const std::string left = row("Patient", c.names.patient.empty() ? "not named" : c.names.patient) +
-                             row("Title", c.names.title) +
-                             row("Plan", c.names.plan.empty() ? "not named" : c.names.plan) +
-                             row("Version of the plan", c.names.plan_version) + row("It holds", contents_of(c.plan)) +
-                             row("Risk structures", risk_structures_of(c.plan)) + row("Case", c.code) +
-                             row("Prepared", time_in_words(c.created)) +
-                             (done.on_given_surface ? "" : row("Body", fmt::format("{:.0f} ml", done.body_ml))) +
-                             row("Cut off by the volume", cut_sides_of(done.judgement));
-    const std::string right =
-        row("Source", c.source) + row("Series", series_of(c.names)) +
-        row("Modality",
-            v.modality.empty() ? "not said" : v.modality + (v.modality == "CT" && !v.is_hu ? ", not in HU" : "")) +
-        row("Voxels", fmt::format("{} x {} x {} of {:.2f} x {:.2f} x {:.2f} mm", v.size[0], v.size[1], v.size[2],
-                                  v.voxel_mm.x(), v.voxel_mm.y(), v.voxel_mm.z())) +
-        (done.on_given_surface ? "" : row("Skin threshold", threshold_of(done))) +
-        (done.brightness_ratio > 1 ? row("Evened out", fmt::format("{:.1f} : 1 across the head", done.brightness_ratio))
-                                   : "") +
-        (c.skin_edge_sigma_mm > 0
-             ? row("The skin's edge", fmt::format("uncertain by {:.2f} mm (1 sigma)", c.skin_edge_sigma_mm))
-             : "") +
-        (done.judgement.fat_shift_mm > 0
-             ? row("Fat is drawn aside", fmt::format("{:.1f} mm along {} (chemical shift)", done.judgement.fat_shift_mm,
-                                                     done.judgement.fat_shift_along))
-             : "");
-    return fmt::format("<div class=\"two\"><table>{}</table><table>{}</table></div>", left, right);
+    return {{"Patient", c.names.patient.empty() ? "not named" : c.names.patient},
+            {"Title", c.names.title},
+            {"Plan", c.names.plan.empty() ? "not named" : c.names.plan},
+            {"Version of the plan", c.names.plan_version},
+            {"It holds", contents_of(c.plan)},
+            {"Risk structures", risk_structures_of(c.plan)},
+            {"Case", c.code},
+            {"Prepared", time_in_words(c.created)},
+            {"Operator", operator_name()},
+            {"Program", program_name()},
+            {"Body", done.on_given_surface ? "" : fmt::format("{:.0f} ml", done.body_ml)},
+            {"Cut off by the volume", cut_sides_of(done.judgement)}};
 }
 
-std::string slices_html(const PreparationPictures& pictures) {
-    std::string html = "<h2>Through the middle of the head</h2>" + figures_in_a_row(pictures.middle_slices, 3);
-    if (!pictures.plan_slices.empty()) html += "<h2>Through the plan</h2>" + figures_in_a_row(pictures.plan_slices, 3);
-    return html +
-           "<p class=\"muted\">Green: the skin as found. Amber: lids over openings. Grey line: ends of the scan. Pink: "
-           "the plan within 3 mm of the slice. Blue: risk structures. The green line must follow the skin wherever "
-           "there is skin.</p>";
+ReportFacts facts_of_volume(const Preparation& done) {
+    const Case& c = done.prepared;
+    const VolumeFacts& v = done.volume;
+    return {{"Source", c.source},
+            {"Series", series_of(c.names)},
+            {"Modality",
+             v.modality.empty() ? "not said" : v.modality + (v.modality == "CT" && !v.is_hu ? ", not in HU" : "")},
+            {"Voxels", fmt::format("{} x {} x {} of {:.2f} x {:.2f} x {:.2f} mm", v.size[0], v.size[1], v.size[2],
+                                   v.voxel_mm.x(), v.voxel_mm.y(), v.voxel_mm.z())},
+            {"Skin threshold", done.on_given_surface ? "" : threshold_of(done)},
+            {"Evened out",
+             done.brightness_ratio > 1 ? fmt::format("{:.1f} : 1 across the head", done.brightness_ratio) : ""},
+            {"The skin's edge",
+             c.skin_edge_sigma_mm > 0 ? fmt::format("uncertain by {:.2f} mm (1 sigma)", c.skin_edge_sigma_mm) : ""},
+            {"Fat is drawn aside", done.judgement.fat_shift_mm > 0
+                                       ? fmt::format("{:.1f} mm along {} (chemical shift)", done.judgement.fat_shift_mm,
+                                                     done.judgement.fat_shift_along)
+                                       : ""}};
+}
+
+void add_slices(const PreparationPictures& pictures, std::vector<DocumentBlock>& blocks) {
+    blocks.push_back(DocumentHeading{"Through the middle of the head"});
+    blocks.push_back(figures_of(pictures.middle_slices, 3));
+    if (!pictures.plan_slices.empty()) {
+        blocks.push_back(DocumentHeading{"Through the plan"});
+        blocks.push_back(figures_of(pictures.plan_slices, 3));
+    }
+    blocks.push_back(
+        DocumentText{"Green: the skin as found. Amber: lids over openings. Grey line: ends of the scan. Pink: the plan "
+                     "within 3 mm of the slice. Blue: risk structures. The green line must follow the skin wherever "
+                     "there is skin.",
+                     Tone::quiet});
 }
 
 /// Large things in front of the head were skin more often than they were a table.
@@ -162,123 +147,149 @@ bool may_be_face(const RemovedPiece& piece, const Eigen::Vector3d& middle_in_ct)
     return piece.ml > 10 && -away.y() > 0.6 * away.norm();
 }
 
-std::string pieces_html(const RemovedPieces& removed) {
-    std::string html = fmt::format(
-        "<div class=\"small\"><p><b>{} as dense as skin thrown away, {:.0f} ml in all</b> (table, head "
-        "holder, wires?). Look whether none of it is the patient.</p><table>",
-        counted(static_cast<long long>(removed.pieces.size()), "piece"), removed.ml());
-    for (std::size_t i = 0; i < std::min(kPiecesListed, removed.pieces.size()); ++i) {
-        const RemovedPiece& piece = removed.pieces[i];
-        const Eigen::Vector3d size = piece.high_in_ct - piece.low_in_ct;
-        html += fmt::format("<tr><td>{}</td><td>{:.{}f} ml, {:.0f} x {:.0f} x {:.0f} mm, {}{}</td></tr>", i + 1,
-                            piece.ml, piece.ml < 10 ? 1 : 0, size.x(), size.y(), size.z(),
-                            place_in_words(piece.middle_in_ct, removed.body_middle_in_ct),
-                            may_be_face(piece, removed.body_middle_in_ct)
-                                ? " <span class=\"stop\">&#9888; is this the face?</span>"
-                                : "");
-    }
-    return html + "</table></div>";
+DocumentText piece_in_words(const RemovedPiece& piece, const Eigen::Vector3d& middle_in_ct) {
+    const Eigen::Vector3d size = piece.high_in_ct - piece.low_in_ct;
+    const bool face = may_be_face(piece, middle_in_ct);
+    return {fmt::format("{:.{}f} ml, {:.0f} x {:.0f} x {:.0f} mm, {}{}", piece.ml, piece.ml < 10 ? 1 : 0, size.x(),
+                        size.y(), size.z(), place_in_words(piece.middle_in_ct, middle_in_ct),
+                        face ? " ⚠ is this the face?" : ""),
+            face ? Tone::stop : Tone::plain};
 }
 
 /// The view from above and beside it what was thrown away.
-std::string second_row(const PreparationPictures& pictures, const RemovedPieces& removed) {
-    std::string html = "<div class=\"row\" style=\"grid-template-columns:repeat(4,1fr)\">";
-    if (pictures.views.size() > 4) html += figure(pictures.views[4]);
+DocumentFigures second_row(const PreparationPictures& pictures, const RemovedPieces& removed) {
+    DocumentFigures row{{}, 4};
+    if (pictures.views.size() > 4) row = figures_of({pictures.views[4]}, 4);
     for (const auto& picture : removed.pictures)
-        html += figure({"Thrown away", picture.title + ": red", picture.picture});
-    return html + (removed.pieces.empty() ? "<p>Nothing as dense as skin was thrown away.</p>" : pieces_html(removed)) +
-           "</div>";
+        row.figures.push_back({"Thrown away", picture.title + ": red", picture.picture});
+    if (removed.pieces.empty()) {
+        row.beside = {{"Nothing as dense as skin was thrown away."}};
+        return row;
+    }
+    row.beside = {{"(table, head holder, wires?). Look whether none of it is the patient.", Tone::plain,
+                   fmt::format("{} as dense as skin thrown away, {:.0f} ml in all",
+                               counted(static_cast<long long>(removed.pieces.size()), "piece"), removed.ml())}};
+    row.table_beside = DocumentTable{{{""}, {""}}, {}, true};
+    for (std::size_t i = 0; i < std::min(kPiecesListed, removed.pieces.size()); ++i)
+        row.table_beside->rows.push_back(
+            {{std::to_string(i + 1)}, piece_in_words(removed.pieces[i], removed.body_middle_in_ct)});
+    return row;
 }
 
 /// Which colour in the views is which structure.
-std::string legend_of_risks(const Plan& plan) {
-    if (plan.risk_structures.empty()) return {};
-    std::string html = "<p class=\"muted\">Seen through the skin:";
-    for (std::size_t i = 0; i < plan.risk_structures.size(); ++i) {
-        const Rgb c = risk_colour(i);
-        html += fmt::format("{} <span style=\"color:#{:02x}{:02x}{:02x}\">&#9632;</span>&nbsp;{}", i > 0 ? "," : "",
-                            c[0], c[1], c[2], xml_escaped(plan.risk_structures[i].name));
-    }
-    return html + ".</p>";
+DocumentKey key_of_risks(const Plan& plan) {
+    DocumentKey key{"Seen through the skin:", {}};
+    for (std::size_t i = 0; i < plan.risk_structures.size(); ++i)
+        key.colours.emplace_back(risk_colour(i), plan.risk_structures[i].name);
+    return key;
 }
 
-std::string views_html(const Preparation& done, const PreparationPictures& pictures, const RemovedPieces& removed) {
-    std::string html = "<h2>The skin with the plan, and what was thrown away</h2>";
-    if (pictures.views.size() >= 4)
-        html += figures_in_a_row({pictures.views.begin(), pictures.views.begin() + 4}, 4);
+void add_views(const Preparation& done, const PreparationPictures& pictures, const RemovedPieces& removed,
+               std::vector<DocumentBlock>& blocks) {
+    const bool drawn = pictures.views.size() >= 4;
+    blocks.push_back(DocumentHeading{"The skin with the plan, and what was thrown away"});
+    if (drawn)
+        blocks.push_back(figures_of({pictures.views.begin(), pictures.views.begin() + 4}, 4));
     else
-        html += fmt::format("<p class=\"look\">{}</p>", xml_escaped(pictures.no_views));
-    if (pictures.views.size() >= 4) html += legend_of_risks(done.prepared.plan);
+        blocks.push_back(DocumentText{pictures.no_views, Tone::look});
+    if (drawn && !done.prepared.plan.risk_structures.empty()) blocks.push_back(key_of_risks(done.prepared.plan));
     if (!cut_sides_of(done.judgement).empty())
-        html += "<p class=\"muted\">Grey on the skin: where the scan ends within the head; that is no skin.</p>";
-    if (done.on_given_surface)
-        return html + (pictures.views.size() > 4 ? figures_in_a_row({pictures.views[4]}, 4) : "") +
-               "<p>The surface was given: nothing was thrown away here.</p>";
-    return html + second_row(pictures, removed);
+        blocks.push_back(
+            DocumentText{"Grey on the skin: where the scan ends within the head; that is no skin.", Tone::quiet});
+    if (!done.on_given_surface) {
+        blocks.push_back(second_row(pictures, removed));
+        return;
+    }
+    if (pictures.views.size() > 4) blocks.push_back(figures_of({pictures.views[4]}, 4));
+    blocks.push_back(DocumentText{"The surface was given: nothing was thrown away here."});
+}
+
+/// A figure and its unit stay on one line.
+std::string unbroken(std::string text) {
+    for (std::size_t at = text.find(' '); at != std::string::npos; at = text.find(' ', at))
+        text.replace(at, 1, "\u00a0");
+    return text;
 }
 
 std::string number(const std::optional<double>& value, int digits, const char* unit) {
     return value ? fmt::format("{:.{}f}{}", *value, digits, unit) : std::string("–");
 }
 
+Tone tone_of(Gravity gravity) {
+    return gravity == Gravity::stop ? Tone::stop : gravity == Gravity::look ? Tone::look : Tone::plain;
+}
+
+DocumentText risk_of(const Clearances& clearances) {
+    std::string words = risk_in_words(clearances);
+    static const std::string kUnit = " mm to ", kUnbroken = "\u00a0mm to ";
+    for (std::size_t at = words.find(kUnit); at != std::string::npos; at = words.find(kUnit, at))
+        words.replace(at, kUnit.size(), kUnbroken);
+    return {words, tone_of(gravity_of(clearances))};
+}
+
 /// `with_risk`: the plan holds risk structures, and the kind stands below the name, so that all columns have room.
-std::string fact_html(const PlanFact& fact, bool with_risk) {
+std::vector<DocumentText> row_of(const PlanFact& fact, bool with_risk) {
     constexpr double kDegrees = 57.29577951308232;
-    const auto figure = [](const std::string& text) { return "<td class=\"figure\">" + text + "</td>"; };
-    const std::string name = (fact.lit.empty() ? "" : fmt::format("<b>{}</b>&ensp;", xml_escaped(fact.lit))) +
-                             xml_escaped(fact.name.empty() ? "without a name" : fact.name) +
-                             (with_risk ? fmt::format("<br><span class=\"muted\">{}</span>", fact.kind) : "");
-    return fmt::format("<tr><td class=\"name\">{}</td>", name) + (with_risk ? "" : figure(fact.kind)) +
-           figure(fact.left_of_middle_mm ? side_in_words(*fact.left_of_middle_mm) : "–") +
-           figure(number(fact.depth_mm ? fact.depth_mm : fact.length_mm, 1, " mm")) +
-           figure(number(fact.diameter_mm, 1, " mm")) +
-           figure(fact.tilt ? fmt::format("{:.0f}°", kDegrees * *fact.tilt) : "–") +
-           fmt::format("<td class=\"words\">{}</td>",
-                       fact.inwards_in_ct ? direction_in_words(*fact.inwards_in_ct) : "–") +
-           figure(number(fact.over_bone_mm, 1, " mm")) +
-           fmt::format("<td class=\"words {}\">{}</td>", class_of(fact.gravity), xml_escaped(fact.distance)) +
-           (with_risk ? fmt::format("<td class=\"risk\">{}</td>", risk_html(fact.clearances)) : "") + "</tr>";
+    std::vector<DocumentText> row{{fact.name.empty() ? "without a name" : fact.name, Tone::plain, fact.lit,
+                                   with_risk ? fact.kind : std::string()}};
+    if (!with_risk) row.push_back({unbroken(fact.kind)});
+    for (const std::string& figure :
+         {fact.left_of_middle_mm ? side_in_words(*fact.left_of_middle_mm) : "–",
+          number(fact.depth_mm ? fact.depth_mm : fact.length_mm, 1, " mm"), number(fact.diameter_mm, 1, " mm"),
+          fact.tilt ? fmt::format("{:.0f}°", kDegrees * *fact.tilt) : "–"})
+        row.push_back({unbroken(figure)});
+    row.push_back({fact.inwards_in_ct ? direction_in_words(*fact.inwards_in_ct) : "–"});
+    row.push_back({unbroken(number(fact.over_bone_mm, 1, " mm"))});
+    row.push_back({fact.distance, tone_of(fact.gravity)});
+    if (with_risk) row.push_back(risk_of(fact.clearances));
+    return row;
 }
 
-std::string plan_html(const std::vector<PlanFact>& facts) {
-    if (facts.empty()) return "<h2>The plan</h2><p>It holds nothing.</p>";
-    const bool with_risk =
-        std::any_of(facts.begin(), facts.end(), [](const PlanFact& fact) { return !fact.clearances.empty(); });
-    std::string html = fmt::format(
-        "<h2>The plan</h2><table class=\"plan{}\"><thead><tr><th>Name</th>{}<th>Side of its middle</th><th>Depth or "
-        "length</th><th>Diameter</th><th>Tilt from the skin's perpen&shy;dicular</th><th>Direction inwards</th>"
-        "<th>Soft tissue over bone</th><th>Its points lie</th>{}</tr></thead>",
-        with_risk ? " tight" : "", with_risk ? "" : "<th>Kind</th>", with_risk ? "<th>Next risk structure</th>" : "");
-    bool by_code = false;
-    for (const auto& fact : facts) html += fact_html(fact, with_risk), by_code = by_code || !fact.lit.empty();
-    return html + "</table>" +
-           (with_risk
-                ? "<p class=\"muted\">Distances to risk structures are those of the plan, from the instrument's, the "
-                  "drill's or the cut's own surface, rounded down. They do not hold how far off the light, the hand "
-                  "or the drawing of the structure may be.</p>"
-                : "") +
-           (by_code ? "<p class=\"muted\">In bold: the code that the light has in place of the name.</p>" : "");
+DocumentTable table_of(const std::vector<PlanFact>& facts, bool with_risk) {
+    using Kind = DocumentTable::Kind;
+    DocumentTable table{{{"Name", Kind::name}}, {}, true};
+    if (!with_risk) table.columns.push_back({"Kind", Kind::figure});
+    for (const char* figure :
+         {"Side of its middle", "Depth or length", "Diameter", "Tilt from the skin's perpen\u00addicular"})
+        table.columns.push_back({figure, Kind::figure});
+    table.columns.push_back({"Direction inwards"});
+    table.columns.push_back({"Soft tissue over bone", Kind::figure});
+    table.columns.push_back({"Its points lie"});
+    if (with_risk) table.columns.push_back({"Next risk structure"});
+    for (const PlanFact& fact : facts) table.rows.push_back(row_of(fact, with_risk));
+    return table;
 }
 
-std::string figures_html(const Preparation& done) {
+void add_plan(const std::vector<PlanFact>& facts, std::vector<DocumentBlock>& blocks) {
+    blocks.push_back(DocumentHeading{"The plan"});
+    if (facts.empty()) {
+        blocks.push_back(DocumentText{"It holds nothing."});
+        return;
+    }
+    const auto any = [&](auto of) { return std::any_of(facts.begin(), facts.end(), of); };
+    const bool with_risk = any([](const PlanFact& fact) { return !fact.clearances.empty(); });
+    blocks.push_back(table_of(facts, with_risk));
+    if (with_risk)
+        blocks.push_back(DocumentText{
+            "Distances to risk structures are those of the plan, from the instrument's, the drill's or the "
+            "cut's own surface, rounded down. They do not hold how far off the light, the hand or the "
+            "drawing of the structure may be.",
+            Tone::quiet});
+    if (any([](const PlanFact& fact) { return !fact.lit.empty(); }))
+        blocks.push_back(DocumentText{"In bold: the code that the light has in place of the name.", Tone::quiet});
+}
+
+DocumentText figures_in_words(const Preparation& done) {
     const Case& c = done.prepared;
     const std::string times = done.on_given_surface ? fmt::format("table {:.2f} s", done.lut_s)
                                                     : fmt::format("skin {:.2f} s, surface {:.2f} s, table {:.2f} s",
                                                                   done.segment_s, done.triangulate_s, done.lut_s);
-    return fmt::format(
-        "<p class=\"muted\">Skin mesh: {} triangles, {} vertices. Table: {} x {} x {} voxels of {:.2f} mm, {} skin "
-        "voxels. "
-        "Times: {}. Volume {}, plan {}.</p>",
-        c.skin.triangles.size(), c.skin.vertices_in_ct.size(), c.lut.size[0], c.lut.size[1], c.lut.size[2],
-        c.lut.voxel_mm, c.lut.skin.size(), times, c.volume_hash, c.plan_hash);
-}
-
-std::string signatures_html() {
-    std::string html;
-    for (const char* who : {"Prepared by", "Skin, plan and patient checked by"})
-        html +=
-            fmt::format("<div class=\"sign\"><span>{}</span><span>Date, time</span><span>Signature</span></div>", who);
-    return html;
+    return {
+        fmt::format("Skin mesh: {} triangles, {} vertices. Table: {} x {} x {} voxels of {:.2f} mm, {} skin voxels. "
+                    "Times: {}. Volume {}, plan {}.",
+                    c.skin.triangles.size(), c.skin.vertices_in_ct.size(), c.lut.size[0], c.lut.size[1], c.lut.size[2],
+                    c.lut.voxel_mm, c.lut.skin.size(), times, c.volume_hash, c.plan_hash),
+        Tone::quiet};
 }
 
 }  // namespace
@@ -288,24 +299,24 @@ PreparationReport preparation_report(const Preparation& done, const PlanDrawing&
     const Case& c = done.prepared;
     const SkinSurface skin(c.skin);
     const std::vector<PlanFact> facts = plan_facts(c.plan, drawing, c.lut, find_mid_plane(skin), &skin);
-    const std::vector<std::string> warnings = gathered(c.warnings, drawing);
-    const std::string first =
-        fmt::format(
-            "<h1>{}</h1><p class=\"muted\">Report of preparation. Research software, not a medical "
-            "device.</p>",
-            xml_escaped(title_of(c))) +
-        warnings_html(warnings) + identity_html(done) + slices_html(pictures);
-    const std::string second =
-        views_html(done, pictures, removed) + plan_html(facts) + figures_html(done) + signatures_html();
-    const std::string body = fmt::format("<section class=\"sheet{}\">", fit_on_a_page(warnings) ? " fit" : "") + first +
-                             "</section><section class=\"sheet\">" + second + "</section>";
-    return {paper_page("Preparation: " + title_of(c), body,
-                       fmt::format("{} · case {} · prepared {}", title_of(c), c.code, time_in_words(c.created))),
-            preparation_json(done, drawing, facts, removed)};
+    Document document{"Preparation: " + title_of(c), "Report of preparation. Research software, not a medical device."};
+    document.made_of_sheets = true;
+    document.verdict = verdict_of(gathered(c.warnings, drawing));
+    document.facts = facts_of_plan(done);
+    const ReportFacts of_volume = facts_of_volume(done);
+    document.facts.insert(document.facts.end(), of_volume.begin(), of_volume.end());
+    add_slices(pictures, document.blocks);
+    document.blocks.push_back(NewSheet{});
+    add_views(done, pictures, removed, document.blocks);
+    add_plan(facts, document.blocks);
+    document.blocks.push_back(figures_in_words(done));
+    document.signed_by = {"Prepared by", "Skin, plan and patient checked by"};
+    document.foot = fmt::format("{} · case {} · prepared {}", title_of(c), c.code, time_in_words(c.created));
+    return {std::move(document), preparation_json(done, drawing, facts, removed)};
 }
 
 void write_preparation_report(const PreparationReport& report, const std::filesystem::path& folder) {
-    write_safely(folder / "report.html", report.html);
+    write_safely(folder / "report.html", html_of(report.document));
     write_safely(folder / "report.json", report.json);
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/prepare_case.h"
+#include "app/report/document.h"
 #include "app/report/preparation_pictures.h"
 #include "app/report/removed_pieces.h"
 #include "projection/draw_plan.h"
@@ -12,8 +13,8 @@ namespace planlight {
 
 /// All that the report of a preparation says and shows, for the one who signs it.
 struct PreparationReport {
-    std::string html;  ///< two sheets of A4 or Letter where the plan is no longer than some twenty items
-    std::string json;  ///< the same in figures
+    Document document;  ///< two sheets of A4 or Letter where the plan is no longer than some twenty items
+    std::string json;   ///< the same in figures
 };
 
 /// What the page says, from what was prepared; nothing is written yet.

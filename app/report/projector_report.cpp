@@ -131,7 +131,7 @@ std::string projector_summary(const ProjectorReport& report) {
     if (report.response && !report.response->refusal) {
         const ResponseResult& r = *report.response;
         text += fmt::format(
-            "  response     gamma {:.2f} +- {:.2f}, black up to {:.0f}, white from {:.0f}, black {}{:.4f} of white\n",
+            "  response     gamma {:.2f} ± {:.2f}, black up to {:.0f}, white from {:.0f}, black {}{:.4f} of white\n",
             r.gamma, r.gamma_sigma, r.dark_end, r.bright_end, r.black_level_is_a_bound ? "with the room's light " : "",
             r.black_level);
         if (r.colours)

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 
+#include "app/report/document.h"
 #include "registration/projector_measurement/light_findings.h"
 
 namespace planlight {
@@ -28,7 +28,7 @@ std::string projector_summary(const ProjectorReport& report);
 /// projector.json (planning_io/FORMATS.md).
 std::string projector_json(const ProjectorReport& report);
 
-/// One page: verdict, the measured curve, the trace of each colour, the histogram of the delays.
-void write_projector_html(const ProjectorReport& report, const std::filesystem::path& file);
+/// Verdict, the measured curve, the trace of each colour, the histogram of the delays.
+Document projector_document(const ProjectorReport& report);
 
 }  // namespace planlight

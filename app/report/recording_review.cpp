@@ -1,27 +1,33 @@
 #include "app/report/recording_review.h"
 #include "app/json_text.h"
+#include "app/local_time.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <nlohmann/json.hpp>
 
+#include "app/report/chart.h"
 #include "app/report/html_page.h"
 #include "app/report/operation_report.h"
-#include "app/report/svg_chart.h"
+#include "planning_io/files/safe_write.h"
+#include "planning_io/types/error.h"
 
 namespace planlight {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* colour_of(LightTrust trust) {
-    return trust == LightTrust::aligned ? "#14663a" : trust == LightTrust::look ? "#d08700" : "#3a3f47";
+Rgb colour_of(LightTrust trust) {
+    return trust == LightTrust::aligned ? Rgb{0x14, 0x66, 0x3a}
+           : trust == LightTrust::look  ? Rgb{0xd0, 0x87, 0x00}
+                                        : Rgb{0x3a, 0x3f, 0x47};
 }
 
 /// Neighbours of one colour as one, so that hours make no long page.
-void add_bands(const RecordingTimeLine& line, double unit_s, SvgChart& chart) {
+void add_bands(const RecordingTimeLine& line, double unit_s, Chart& chart) {
     const auto& all = line.stretches;
     for (std::size_t i = 0; i < all.size();) {
         std::size_t end = i + 1;
@@ -33,11 +39,11 @@ void add_bands(const RecordingTimeLine& line, double unit_s, SvgChart& chart) {
 }
 
 /// The worst of as many stretches as one place of the chart has.
-SvgChart::Points worst_of(const RecordingTimeLine& line, double unit_s, double RecordingTimeLine::Stretch::*figure,
-                          double most) {
+Chart::Points worst_of(const RecordingTimeLine& line, double unit_s, double RecordingTimeLine::Stretch::*figure,
+                       double most) {
     constexpr std::size_t kMostPlaces = 600;
     const std::size_t join = line.stretches.size() / kMostPlaces + 1;
-    SvgChart::Points points;
+    Chart::Points points;
     for (std::size_t i = 0; i < line.stretches.size(); i += join) {
         double worst = -1;
         for (std::size_t k = i; k < std::min(i + join, line.stretches.size()); ++k)
@@ -56,20 +62,20 @@ std::string review_page(const RecordingTimeLine& line, const std::vector<std::pa
     const bool long_one = line.lasted_s > 300;
     const double unit_s = long_one ? 60 : 1, end = std::max(1.0, line.lasted_s / unit_s);
     const std::string clock = long_one ? "minutes since the room was entered" : "seconds since the room was entered";
-    SvgChart gate({0, end, clock, 10}, {0, 1.05, "", 1}, 1100, 130);
+    Chart gate({0, end, clock, 10}, {0, 1.05, "", 1}, 1100, 130);
     add_bands(line, unit_s, gate);
-    SvgChart errors({0, end, clock, 10}, {0, kMost_mm, "mm, 95 %", 6}, 1100, 300);
-    errors.line({{0, kOperationLook_mm}, {end, kOperationLook_mm}}, "#d08700", 1);
-    errors.line({{0, kOperationStop_mm}, {end, kOperationStop_mm}}, "#a3121f", 1);
-    errors.dots(worst_of(line, unit_s, &RecordingTimeLine::Stretch::predicted_mm, kMost_mm), "#9a5bb0");
-    errors.dots(worst_of(line, unit_s, &RecordingTimeLine::Stretch::off_mm, kMost_mm), "#15406b");
+    Chart errors({0, end, clock, 10}, {0, kMost_mm, "mm, 95 %", 6}, 1100, 300);
+    errors.line({{0, kOperationLook_mm}, {end, kOperationLook_mm}}, Rgb{0xd0, 0x87, 0x00}, 1);
+    errors.line({{0, kOperationStop_mm}, {end, kOperationStop_mm}}, Rgb{0xa3, 0x12, 0x1f}, 1);
+    errors.dots(worst_of(line, unit_s, &RecordingTimeLine::Stretch::predicted_mm, kMost_mm), Rgb{0x9a, 0x5b, 0xb0});
+    errors.dots(worst_of(line, unit_s, &RecordingTimeLine::Stretch::off_mm, kMost_mm), Rgb{0x15, 0x40, 0x6b});
     std::string body;
-    if (!line.ended.empty()) body += "<p class=\"no\">" + xml_escaped(line.ended) + "</p>";
+    if (!line.ended.empty()) body += "<p class=\"stop\">" + xml_escaped(line.ended) + "</p>";
     body +=
-        "<h2>What the light was</h2>" + gate.text() +
+        "<h2>What the light was</h2>" + gate.svg() +
         "<p>High and green: aligned. Middle and amber: to be looked at. Low and dark: no light. Nothing: the plan was "
         "not followed.</p><h2>How far off it was</h2>" +
-        errors.text() +
+        errors.svg() +
         "<p>Blue: measured by the cameras. Purple: predicted for the worst item, by match and pose. Each point is the "
         "worst of its stretch; lines at 1 mm (not trusted) and 2 mm (goes out); what is above 3 mm stands at 3.</p>";
     for (const auto& [file, caption] : pictures)
@@ -83,26 +89,62 @@ std::string review_page(const RecordingTimeLine& line, const std::vector<std::pa
     body += "</table>";
     if (line.events.size() > kMostEvents)
         body += fmt::format("<p>And {} more, in review.json.</p>", line.events.size() - kMostEvents);
-    return html_page("Session: " + line.head.case_title, body,
-                     {{"Operator", line.head.operator_name.empty() ? "left out" : line.head.operator_name},
+    return html_page("Session: " + line.head.case_title, {},
+                     {{"Operator", line.head.operator_name.empty() ? "left out" : operator_text(line.head)},
                       {"Began", line.head.began_utc},
+                      {"Room clock 0:00:00", utc_and_local_time(line.room_entered_utc)},
                       {"Lasted", duration_text(line.lasted_s)},
-                      {"Frames kept", std::to_string(line.frames_s.size())}});
+                      {"Frames kept", std::to_string(line.frames_s.size())}},
+                     body);
+}
+
+/// What the session was told to do; null where its program did not keep it.
+Json settings_of(const RecordingHead& head) {
+    return head.settings.empty() ? Json() : Json::parse(head.settings);
 }
 
 std::string review_json(const RecordingTimeLine& line) {
     constexpr const char* kTrusts[] = {"dark", "look", "aligned"};
     const auto known = [](double mm) { return mm >= 0 ? Json(mm) : Json(); };
-    Json json{{"format", kReviewFormat},     {"version", 1},
-              {"case", line.head.case_code}, {"began", line.head.began_utc},
-              {"lasted_s", line.lasted_s},   {"ended", line.ended},
-              {"stretches", Json::array()},  {"events", Json::array()},
+    Json json{{"format", kReviewFormat},
+              {"version", 1},
+              {"case", line.head.case_code},
+              {"operator", line.head.operator_name},
+              {"settings", settings_of(line.head)},
+              {"began", line.head.began_utc},
+              {"room_entered", line.room_entered_utc},
+              {"lasted_s", line.lasted_s},
+              {"ended", line.ended},
+              {"stretches", Json::array()},
+              {"events", Json::array()},
               {"frames_s", line.frames_s}};
     for (const auto& s : line.stretches)
         json["stretches"].push_back(
             {s.from_s, s.to_s, kTrusts[static_cast<std::size_t>(s.trust)], known(s.off_mm), known(s.predicted_mm)});
     for (const auto& event : line.events) json["events"].push_back({event.at_s, event.what});
     return json_line(json) + "\n";
+}
+
+void write_review(RecordingTimeLine& line, const std::filesystem::path& folder,
+                  const std::function<void(ReviewedMoment&)>& show,
+                  const std::function<void(RecordingTimeLine&)>& look) {
+    ReviewedMoment moment;
+    const auto write_page = [&] {
+        write_safely(folder / "index.html", review_page(line, moment.pictures, moment.more), ReadableBy::owner);
+    };
+    const auto write_figures = [&] { write_safely(folder / "review.json", review_json(line), ReadableBy::owner); };
+    write_page();
+    write_figures();
+    std::exception_ptr damage;
+    try {
+        show(moment);
+    } catch (const DamagedFileError&) {
+        damage = std::current_exception();
+    }
+    if (!moment.pictures.empty()) write_page();
+    look(line);
+    if (line.damaged_pictures) write_page(), write_figures();
+    if (damage) std::rethrow_exception(damage);
 }
 
 }  // namespace planlight

@@ -75,10 +75,10 @@ std::vector<std::pair<std::string, const char*>> figures_of(const OperatorModel&
     const auto add = [&](const std::optional<double>& value, const std::string& text, const char* words) {
         if (value && std::isfinite(*value)) said.emplace_back(text, words);
     };
-    add(light, error_text(light, "mm", {model.warn_above_mm, model.stop_above_mm}), "is the light beside the plan");
+    add(light, error_text(light, "mm", {model.warn_above_mm, model.stop_above_mm}), "from the light to the plan");
     add(f.updates_per_s, number_text(f.updates_per_s, "/ s"), "pictures reach the skin");
     add(f.head_moved_mm, number_text(f.head_moved_mm, "mm") + " · " + number_text(f.head_turned_deg, "°"),
-        "has the head moved since the scan");
+        "movement of the head since the scan");
     add(f.delay_to_light_ms, number_text(f.delay_to_light_ms, "ms"), "from camera to light, drawn ahead");
     return said;
 }

@@ -1,22 +1,32 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "app/windows/panels.h"
 
 namespace planlight {
 namespace {
 
-/// "Space · B" with the keys' names in the window's language.
-std::string keys_in_words(const Pen& pen, const std::string& keys) {
+/// "Space · B" with the keys' names in the window's language. Where there is no room for all, those in the middle give
+/// way: the letter and the pedal's key stay.
+std::string keys_in_words(const Pen& pen, const std::string& keys, float width) {
     static const std::string kBetween = " · ";
-    std::string words;
+    std::vector<std::string> words;
     for (std::size_t at = 0; at <= keys.size();) {
         const std::size_t end = std::min(keys.find(kBetween, at), keys.size());
-        words += (at == 0 ? "" : kBetween) + pen.say(keys.substr(at, end - at));
+        words.push_back(pen.say(keys.substr(at, end - at)));
         at = end + kBetween.size();
     }
-    return words;
+    const auto joined = [&] {
+        std::string line = words.front();
+        for (std::size_t i = 1; i < words.size(); ++i) line += kBetween + words[i];
+        return line;
+    };
+    while (words.size() > 1 && text_width(pen.fonts.small, joined()) > width)
+        words.erase(words.begin() + static_cast<std::ptrdiff_t>(words.size() / 2));
+    return joined();
 }
 
 void draw_button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state,
@@ -38,8 +48,9 @@ void draw_button(const Pen& pen, const Box& box, const std::string& label, const
                                                             : pen.fonts.small;
         pen.line(font, label, box.x + pad, box.y + (look.key.empty() ? 0.5F : 0.40F) * box.height, box.width - 2 * pad,
                  pen.theme->text, Pen::Side::centre);
-        pen.line(pen.fonts.small, keys_in_words(pen, look.key), box.x + pad, box.y + 0.77F * box.height,
-                 box.width - 2 * pad, look.leads_on ? pen.theme->text : pen.theme->quiet, Pen::Side::centre);
+        pen.line(pen.fonts.small, keys_in_words(pen, look.key, box.width - 2 * pad), box.x + pad,
+                 box.y + 0.77F * box.height, box.width - 2 * pad, look.leads_on ? pen.theme->text : pen.theme->quiet,
+                 Pen::Side::centre);
         return;
     }
     const float height = line_height(pen.fonts.small);
@@ -72,7 +83,7 @@ void draw_dark_button(const Pen& pen, const Box& box, bool hovered, bool held, c
               pen.theme->badge_edge, 2);
     const float top = box.y + 0.38F * box.height;
     pen.line(pen.fonts.number, pen.say("DARK"), box.x, top, box.width, pen.theme->badge_text, Pen::Side::centre);
-    pen.line(pen.fonts.small, keys_in_words(pen, keys), box.x, box.y + 0.78F * box.height, box.width,
+    pen.line(pen.fonts.small, keys_in_words(pen, keys, box.width), box.x, box.y + 0.78F * box.height, box.width,
              pen.theme->badge_quiet, Pen::Side::centre);
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/windows/operator_keys.h"
 #include "app/windows/panels.h"
 
 namespace planlight {
@@ -82,12 +83,13 @@ void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, bo
         text_width(pen.fonts.small, title) > box.width - 22 * s && at != std::string::npos)
         title = pen.say(camera.title.substr(0, at)) + state;
     draw_strip(pen, box, title, IM_COL32(10, 12, 16, 225), on_pictures().text, false);
+    const std::string key = " · " + key_text(KeyMeaning::refused_picture);
     if (refused)
-        draw_strip(pen, box, pen.say("Press for the live picture"), IM_COL32(70, 18, 20, 235), on_pictures().text,
+        draw_strip(pen, box, pen.say("Press for the live picture") + key, IM_COL32(70, 18, 20, 235), on_pictures().text,
                    true);
     if (!refused && camera.refused)
-        draw_strip(pen, box, pen.say("Press for the refused picture"), IM_COL32(10, 12, 16, 225), on_pictures().text,
-                   true);
+        draw_strip(pen, box, pen.say("Press for the refused picture") + key, IM_COL32(10, 12, 16, 225),
+                   on_pictures().text, true);
     if (!old) return;
     const std::string age = pen.say(camera.old_s < 100 ? std::to_string(camera.old_s) + " s OLD" : "OLD");
     pen.line(pen.fonts.number, age, box.x, box.y + box.height / 2, box.width, on_pictures().amber, Pen::Side::centre);

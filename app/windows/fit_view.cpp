@@ -20,6 +20,10 @@ SceneModel scene_of_fit(const OperatorModel& model, FitView view) {
     SceneModel scene = model.scene;
     scene.warn_above_mm = model.warn_above_mm;
     scene.stop_above_mm = model.stop_above_mm;
+    if (model.look_at && view == FitView::after) {  // the ring stands out on bare skin, not on a scan of its own colour
+        scene.cloud = nullptr;
+        scene.cloud_distance_mm = nullptr;
+    }
     if (!model.fit || view == FitView::after) return scene;
     scene.light = nullptr;  // it falls by the pose after the fine match
     if (view == FitView::before) {

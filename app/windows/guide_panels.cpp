@@ -145,13 +145,13 @@ void draw_guide_depths(const Pen& pen, const Box& box, const GuideModel& model) 
     std::sort(all.begin(), all.end());
     const double usual = all.empty() ? *model.distance_now_mm : all[all.size() / 2];
     const double low = 0.8 * usual, high = 1.2 * usual;
-    const float s = pen.scale, from = box.x + 70 * s, to = box.right() - 70 * s, y = box.y + box.height * 0.62F;
+    const float s = pen.scale, from = box.x + 88 * s, to = box.right() - 84 * s, y = box.y + box.height * 0.62F;
     const auto at = [&](double mm) {
         return from + (to - from) * static_cast<float>(std::clamp((mm - low) / (high - low), 0.0, 1.0));
     };
     pen.list->AddLine({from, y}, {to, y}, pen.theme->edge, 4 * s);
     pen.line(pen.fonts.small, pen.say("near"), box.x + 12 * s, y, 60 * s, pen.theme->quiet);
-    pen.line(pen.fonts.small, pen.say("far"), to + 10 * s, y, 56 * s, pen.theme->quiet);
+    pen.line(pen.fonts.small, pen.say("far"), to + 24 * s, y, 56 * s, pen.theme->quiet);
     for (const double mm : all) pen.list->AddCircleFilled({at(mm), y}, 7 * s, pen.theme->green, 20);
     if (model.distance_now_mm) pen.list->AddCircle({at(*model.distance_now_mm), y}, 12 * s, pen.theme->text, 24, 3 * s);
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/windows/operator_keys.h"
 #include "app/windows/panels.h"
 
 namespace planlight {
@@ -141,20 +142,32 @@ void LandmarkPanel::draw_words(const Pen& pen, const Box& box) const {
 
 std::optional<LandmarkButton> LandmarkPanel::draw_buttons(const Pen& pen, const Box& strip,
                                                           const std::string& use_label) {
-    const std::size_t clicked = clicks_.on_skin().size() + clicks_.on_scan().size();
-    const bool enough = clicks_.pairs().size() >= kLeastPairs;
-    const std::array<std::tuple<LandmarkButton, std::string, ButtonState, float>, 4> row{
-        {{LandmarkButton::undo, "Undo", {clicked > 0, "nothing clicked"}, 0.19F},
-         {LandmarkButton::turn, "Turn 90°", {true, {}}, 0.24F},
-         {LandmarkButton::use, use_label, {enough, fmt::format("{} landmarks needed", kLeastPairs)}, 0.36F},
-         {LandmarkButton::close, "Close", {true, {}}, 0.21F}}};
+    struct Place {
+        LandmarkButton which;
+        std::string label;
+        ButtonState state;
+        float share;
+        KeyMeaning key;
+    };
+    const std::array<Place, 4> row{{{LandmarkButton::undo,
+                                     "Undo",
+                                     {can(LandmarkButton::undo), "nothing clicked"},
+                                     0.19F,
+                                     KeyMeaning::landmark_undo},
+                                    {LandmarkButton::turn, "Turn 90°", {true, {}}, 0.24F, KeyMeaning::landmark_turn},
+                                    {LandmarkButton::use,
+                                     use_label,
+                                     {can(LandmarkButton::use), fmt::format("{} landmarks needed", kLeastPairs)},
+                                     0.36F,
+                                     KeyMeaning::landmark_use},
+                                    {LandmarkButton::close, "Close", {true, {}}, 0.21F, KeyMeaning::landmarks}}};
     const float gap = 8 * pen.scale, room = strip.width - 3 * gap;
     std::optional<LandmarkButton> pressed;
     Box box = strip;
-    for (const auto& [which, label, state, share] : row) {
+    for (const auto& [which, label, state, share, key] : row) {
         box.width = share * room;
         buttons_[static_cast<std::size_t>(which)] = box;
-        if (button(pen, box, label, state)) pressed = which;
+        if (button(pen, box, label, state, {false, false, key_text(key)})) pressed = which;
         box.x = box.right() + gap;
     }
     return pressed;
@@ -177,12 +190,27 @@ std::optional<LandmarkButton> LandmarkPanel::draw(const Pen& pen, const Box& box
              on_pictures().text);
     const auto pressed =
         draw_buttons(pen, {box.x + edge, box.bottom() - edge - high, box.width - 2 * edge, high}, use_label);
-    if (pressed == LandmarkButton::undo) clicks_.undo();
-    if (pressed == LandmarkButton::turn) {
+    if (pressed) press(*pressed);
+    return pressed;
+}
+
+void LandmarkPanel::press(LandmarkButton which) {
+    if (which == LandmarkButton::undo) clicks_.undo();
+    if (which == LandmarkButton::turn && scan_) {
         quarter_turns_ = (quarter_turns_ + 1) % 4;
         scan_scene_.skin = turned_mesh(scan_->surface.mesh(), turned());
     }
-    return pressed;
+}
+
+bool LandmarkPanel::can(LandmarkButton which) const {
+    if (which == LandmarkButton::undo) return clicks_.on_skin().size() + clicks_.on_scan().size() > 0;
+    return which != LandmarkButton::use || clicks_.pairs().size() >= kLeastPairs;
+}
+
+std::string LandmarkPanel::why_not(LandmarkButton which) const {
+    if (can(which)) return {};
+    return which == LandmarkButton::undo ? "No landmark has been clicked yet."
+                                         : fmt::format("At least {} landmarks are needed.", kLeastPairs);
 }
 
 std::map<std::string, Box> LandmarkPanel::places() const {

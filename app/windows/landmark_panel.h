@@ -28,6 +28,10 @@ public:
     std::optional<LandmarkButton> draw(const Pen& pen, const Box& box, const LandmarkViews& views,
                                        const std::string& use_label);
 
+    /// What its button does, and why it cannot do it now: a sentence, empty where it can.
+    void press(LandmarkButton which);
+    std::string why_not(LandmarkButton which) const;
+
     LandmarkClicks& clicks() { return clicks_; }
     const LandmarkClicks& clicks() const { return clicks_; }
     void set_skin_view(const SceneView& view) { skin_pane_.set_view(view); }
@@ -40,6 +44,7 @@ private:
     void draw_panes(const Pen& pen, const LandmarkViews& views);
     Eigen::Isometry3d turned() const;
     void draw_words(const Pen& pen, const Box& box) const;
+    bool can(LandmarkButton which) const;
     std::optional<LandmarkButton> draw_buttons(const Pen& pen, const Box& strip, const std::string& use_label);
 
     LandmarkClicks clicks_;

@@ -20,6 +20,13 @@ bool part_of_plan(const OperatorModel& model) {
            std::any_of(model.rows.begin(), model.rows.end(), [](const PlanRow& row) { return row.hidden; });
 }
 
+std::optional<LandmarkButton> landmark_button(KeyMeaning key) {
+    if (key == KeyMeaning::landmark_undo) return LandmarkButton::undo;
+    if (key == KeyMeaning::landmark_turn) return LandmarkButton::turn;
+    if (key == KeyMeaning::landmark_use) return LandmarkButton::use;
+    return std::nullopt;
+}
+
 }  // namespace
 
 MiddleView::MiddleView(const FontFiles& fonts, std::function<void()> make_current)
@@ -59,11 +66,14 @@ OperatorAction MiddleView::press(KeyMeaning key, const OperatorModel& model) {
     if (key == KeyMeaning::error) look_at(FitView::predicted_error);
     if (key == KeyMeaning::evidence) evidence_open_ = !evidence_open_;
     if (key == KeyMeaning::landmarks) {
-        if (model.landmarks)
+        if (landmarks_open_)
+            landmarks_open_ = false;
+        else if (model.landmarks)
             open_landmarks();
         else
             why_not_ = "Landmarks are clicked on a scan, and there is none.";
     }
+    if (const auto pressed = landmark_button(key)) return press_landmarks(*pressed);
     if (const std::string why = views_.press(key, model, scene_); !why.empty()) why_not_ = why;
     mark_row(key, model);
     if (key == KeyMeaning::next_item || key == KeyMeaning::all_items || key == KeyMeaning::hide_item)
@@ -74,6 +84,19 @@ OperatorAction MiddleView::press(KeyMeaning key, const OperatorModel& model) {
     if (key == KeyMeaning::check_skin && model.check_skin) return OperatorAction::check_skin;
     if (key == KeyMeaning::check_skin) why_not_ = "The skin is checked while the light follows the patient.";
     return OperatorAction::none;
+}
+
+OperatorAction MiddleView::press_landmarks(LandmarkButton which) {
+    if (!landmarks_open_ || evidence_open_) {
+        why_not_ = "That key is for landmarks, and they are not open.";
+        return OperatorAction::none;
+    }
+    why_not_ = landmarks_->why_not(which);
+    if (!why_not_.empty()) return OperatorAction::none;
+    landmarks_->press(which);
+    if (which != LandmarkButton::use) return OperatorAction::none;
+    landmarks_open_ = false;
+    return OperatorAction::use_landmarks;
 }
 
 OperatorAction MiddleView::hide_or_show(std::size_t row, const OperatorModel& model) {
@@ -157,7 +180,9 @@ void MiddleView::draw_scene(const Pen& pen, const Box& place, const OperatorMode
 
 void MiddleView::draw_title(const Pen& pen, const Box& place, const OperatorModel& model,
                             const SceneModel& shown) const {
-    std::string title = pen.say(shown.plan ? "Skin from CT, with the plan." : "Skin from CT.");
+    std::string title = pen.say(model.look_at ? "Skin from CT: the ring is where the light belongs."
+                                : shown.plan  ? "Skin from CT, with the plan."
+                                              : "Skin from CT.");
     const auto add = [&](const std::string& sentence) { title += " " + pen.say(sentence); };
     if (model.fit && fit_view == FitView::before)
         add("BEFORE: the scan where the first, rough match put it, coloured by its distance.");
@@ -188,8 +213,8 @@ void MiddleView::look_at_what_is_lit(const Pen& pen, const Box& place, const Box
         return;
     }
     if (!view_before_) view_before_ = scene_.view();
-    SceneView view = view_along(looked_at_->normal_in_ct, {0, 0, 1});
-    view = {view.azimuth, std::clamp(view.elevation, -0.5, 0.9), 0, scene_.view().zoom, Eigen::Vector2d::Zero()};
+    SceneView view = view_along(looked_at_->from_in_ct, {0, 0, 1});
+    view = {view.azimuth, view.elevation, 0, scene_.view().zoom, Eigen::Vector2d::Zero()};
     scene_.look(view);
     scene_.draw(pen, place, scene_of_fit(model, fit_view));
     const ImVec2 at = scene_.pixel_of(looked_at_->p_in_ct);
@@ -242,7 +267,7 @@ OperatorAction MiddleView::draw_corner_buttons(const Pen& pen, Box corner, const
     if (!model.confirm) return wanted;
     places_["confirm"] = corner;
     const bool leads_on = model.next == OperatorAction::confirm;
-    const ButtonLook look{false, leads_on, key_text(KeyMeaning::confirm) + (leads_on ? " · Enter" : "")};
+    const ButtonLook look{false, leads_on, keys_of_button(KeyMeaning::confirm, leads_on)};
     return button(pen, corner, model.confirm_words, {true, {}}, look) ? OperatorAction::confirm : wanted;
 }
 

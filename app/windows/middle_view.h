@@ -50,6 +50,7 @@ private:
     void draw_title(const Pen& pen, const Box& place, const OperatorModel& model, const SceneModel& shown) const;
     void draw_fit_buttons(const Pen& pen, const Box& row, const OperatorModel& model);
     OperatorAction press_item(KeyMeaning key, const OperatorModel& model);
+    OperatorAction press_landmarks(LandmarkButton which);
     OperatorAction hide_or_show(std::size_t row, const OperatorModel& model);
     void mark_row(KeyMeaning key, const OperatorModel& model);
     void look_at_what_is_lit(const Pen& pen, const Box& place, const Box& free, const OperatorModel& model);

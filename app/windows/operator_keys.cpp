@@ -27,6 +27,10 @@ constexpr Key kKeys[] = {
     {GLFW_KEY_C, KeyMeaning::confirm, "C"},
     {GLFW_KEY_K, KeyMeaning::check_skin, "K"},
     {GLFW_KEY_L, KeyMeaning::landmarks, "L"},
+    {GLFW_KEY_U, KeyMeaning::landmark_undo, "U"},
+    {GLFW_KEY_Q, KeyMeaning::landmark_turn, "Q"},
+    {GLFW_KEY_M, KeyMeaning::landmark_use, "M"},
+    {GLFW_KEY_P, KeyMeaning::refused_picture, "P"},
     {GLFW_KEY_E, KeyMeaning::evidence, "E"},
     {GLFW_KEY_1, KeyMeaning::before, "1"},
     {GLFW_KEY_2, KeyMeaning::after, "2"},
@@ -63,6 +67,10 @@ std::string key_text(KeyMeaning meaning) {
         if (known.meaning == meaning && *known.shown != '\0')
             text += (text.empty() ? "" : " · ") + std::string(known.shown);
     return text;
+}
+
+std::string keys_of_button(KeyMeaning meaning, bool leads_on) {
+    return key_text(meaning) + (leads_on ? " · " + key_text(KeyMeaning::next) : "");
 }
 
 }  // namespace planlight

@@ -15,7 +15,11 @@ enum class KeyMeaning {
     stop,
     confirm,
     check_skin,
-    landmarks,
+    landmarks,  ///< opens and closes them
+    landmark_undo,
+    landmark_turn,
+    landmark_use,
+    refused_picture,  ///< the picture that a scan was refused for, or the live one again
     evidence,
     before,
     after,
@@ -35,7 +39,7 @@ enum class KeyMeaning {
     row_below,
     hide_item,     ///< the marked row is hidden, or shown again
     close_window,  ///< while that is asked
-    stay,
+    stay,          ///< so does what leads on: one pedal answers
 };
 
 /// Of a key as GLFW names it (`GLFW_KEY_...`).
@@ -43,5 +47,7 @@ KeyMeaning meaning_of(int key);
 
 /// How that key is shown in a button: "S"; several with a dot between them.
 std::string key_text(KeyMeaning meaning);
+/// Of a button: "S", or "S · Enter · PgDn" of the one that leads on.
+std::string keys_of_button(KeyMeaning meaning, bool leads_on);
 
 }  // namespace planlight

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/room_kind.h"
 #include "planning_io/types/image.h"
 #include "planning_io/types/point_cloud.h"
 #include "planning_io/types/rigid_transform.h"
@@ -16,10 +17,12 @@
 
 namespace planlight {
 
+inline constexpr double kStickerRadius_mm = 8;  ///< of a marker, round its disc
+
 /// A marker's disc on the skin, as the 3-D view shows it.
 struct SceneMarker {
     Eigen::Vector3d p_in_ct;
-    Eigen::Vector3d normal_in_ct = Eigen::Vector3d::Zero();  ///< outward, unit; zero: facing the viewer
+    Eigen::Vector3d normal_in_ct = Eigen::Vector3d::Zero();  ///< outward, unit; zero: away from the head's middle
     bool seen = true;                                        ///< false is drawn grey
 };
 
@@ -97,7 +100,7 @@ struct SceneView {
 /// A place on the skin, for a person to look at; in ct, mm.
 struct LookAt {
     Eigen::Vector3d p_in_ct;
-    Eigen::Vector3d normal_in_ct;  ///< outward, unit
+    Eigen::Vector3d from_in_ct;  ///< the way from there to the eye, unit, from which nothing hides it (`free_view_of`)
 
     bool operator==(const LookAt&) const = default;
 };
@@ -193,12 +196,12 @@ enum class OperatorAction {
 
 /// All that the operator window shows, as values: the window draws it and knows nothing else.
 struct OperatorModel {
-    std::string case_title;            ///< whose head: the patient, as the site names them
-    std::string case_plan;             ///< plan, its version, date of the series
-    std::string case_subtitle;         ///< further words
-    std::string case_side;             ///< "RIGHT", in large letters; empty: not known
-    bool simulated = false;            ///< nothing is real: said in large letters
-    std::array<StepState, 6> steps{};  ///< Case, Rig, Scan, Match, Verify, Project
+    std::string case_title;               ///< whose head: the patient, as the site names them
+    std::string case_plan;                ///< plan, its version, date of the series
+    std::string case_subtitle;            ///< further words
+    std::string case_side;                ///< "RIGHT", in large letters; empty: not known
+    RoomKind room_kind = RoomKind::real;  ///< nothing is real: said in large letters
+    std::array<StepState, 6> steps{};     ///< Case, Rig, Scan, Match, Verify, Project
     SceneModel scene;
     std::optional<LandmarkViews> landmarks;  ///< there is a scan: landmarks can be clicked on it
     std::optional<FitViews> fit;             ///< there is a match to be looked at: the 3-D view gets buttons for it
@@ -226,7 +229,8 @@ struct OperatorModel {
     bool operator==(const OperatorModel&) const = default;
 };
 
-/// The scene as that view shows it. Without a match it is the scene as it is.
+/// The scene as that view shows it. Without a match it is the scene as it is. After the match, without the scan while a
+/// person is asked to look at a place.
 SceneModel scene_of_fit(const OperatorModel& model, FitView view);
 
 }  // namespace planlight

@@ -102,7 +102,7 @@ struct OperatorWindow::Parts {
         for (const WayButton& way : kWay) {
             controls[way.action] = box;
             const bool leads_on = model.next == way.action;
-            const ButtonLook look{false, leads_on, key_text(way.key) + (leads_on ? " · Enter" : "")};
+            const ButtonLook look{false, leads_on, keys_of_button(way.key, leads_on)};
             if (button(pen, box, way.label, model.*way.state, look)) wanted = way.action;
             if (!(model.*way.state).enabled && ImGui::IsItemHovered() && ImGui::IsMouseReleased(0))
                 if_enabled(way, model);
@@ -143,9 +143,16 @@ struct OperatorWindow::Parts {
                         texture_id(texture->take(shown.picture, static_cast<int>(box.width))));
             places[word] = box;
             ImGui::SetCursorScreenPos({box.x, box.y});
-            if (ImGui::InvisibleButton(word, {box.width, box.height}) && camera->refused)
-                live_instead_of_refused = !live_instead_of_refused;
+            if (ImGui::InvisibleButton(word, {box.width, box.height}) && camera->refused) change_picture(model);
         }
+    }
+
+    /// The refused pictures, or the live ones again.
+    void change_picture(const OperatorModel& model) {
+        if (model.left.refused || model.right.refused)
+            live_instead_of_refused = !live_instead_of_refused;
+        else
+            say("There is no picture of a refused scan.");
     }
 
     /// Over the middle, so that the banner and DARK stay free.
@@ -167,7 +174,8 @@ struct OperatorWindow::Parts {
         places["stay"] = other;
         if (button(pen, row, "Dark and close", {true, {}}, {false, false, key_text(KeyMeaning::close_window)}))
             return OperatorAction::quit;
-        if (button(pen, other, "Stay", {true, {}}, {false, true, key_text(KeyMeaning::stay)})) asks_to_close = false;
+        if (button(pen, other, "Stay", {true, {}}, {false, true, keys_of_button(KeyMeaning::stay, true)}))
+            asks_to_close = false;
         return OperatorAction::none;
     }
 
@@ -193,7 +201,7 @@ struct OperatorWindow::Parts {
     OperatorAction take_key(const OperatorModel& model) {
         KeyMeaning pressed = std::exchange(key, KeyMeaning::none);
         if (asks_to_close) {
-            if (pressed == KeyMeaning::stay) asks_to_close = false;
+            if (pressed == KeyMeaning::stay || pressed == KeyMeaning::next) asks_to_close = false;
             return pressed == KeyMeaning::close_window ? OperatorAction::quit : OperatorAction::none;
         }
         if (pressed == KeyMeaning::next) {
@@ -204,6 +212,7 @@ struct OperatorWindow::Parts {
         }
         for (const WayButton& way : kWay)
             if (pressed == way.key) return if_enabled(way, model);
+        if (pressed == KeyMeaning::refused_picture) change_picture(model);
         const OperatorAction wanted = middle->press(pressed, model);
         if (const std::string why = middle->why_not(); !why.empty()) say(why);
         return wanted;
@@ -233,9 +242,10 @@ OperatorWindow::~OperatorWindow() = default;
 OperatorAction OperatorWindow::frame(const OperatorModel& model) {
     Parts& parts = *parts_;
     parts.gui.take_input(0);
+    // Before anything is drawn: without graphics hardware that takes half a second, in which the light would go on.
+    if (std::exchange(parts.dark_pressed, false)) return OperatorAction::dark;
     if (parts.take_close(model)) {
-        if (std::exchange(parts.dark_pressed, false)) return OperatorAction::dark;  // and closed by the next frame
-        parts.gui.keep_open();                                                      // it has been said
+        parts.gui.keep_open();  // it has been said
         return OperatorAction::quit;
     }
     parts.forget_question(model);
@@ -252,7 +262,6 @@ OperatorAction OperatorWindow::frame(const OperatorModel& model) {
         parts.drawn = model;
         if (by_key != OperatorAction::none) wanted = by_key;
     }
-    if (std::exchange(parts.dark_pressed, false)) return OperatorAction::dark;
     return wanted;
 }
 

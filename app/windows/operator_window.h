@@ -18,8 +18,8 @@ public:
     explicit OperatorWindow(const WindowSettings& settings = {});
     ~OperatorWindow();
 
-    /// Takes in what was pressed, draws the model where that shows anything new, and says what the person wants; `dark`
-    /// comes before all else.
+    /// Takes in what was pressed, draws the model where that shows anything new, and says what the person wants. `dark`
+    /// comes before all else, drawing too.
     ///
     /// DARK acts when it is pressed, not when released, and by the keys Space, B, Escape and Page Up. Every button has
     /// a key, which stands in it; Page Down and Enter press the one that leads on. Closing the window is `quit`; while

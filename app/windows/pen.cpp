@@ -3,7 +3,9 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "projection/visual_order.h"
@@ -38,6 +40,16 @@ bool breaks_anywhere(unsigned code) {
     return code >= 0x2E80 && code < 0xFFF0 && !closes && !(code >= 0xAC00 && code <= 0xD7AF);
 }
 
+/// "0.3 mm" and "95 %" are read as one: nothing breaks between them.
+bool stays_with_number(const std::string& before, const char* next) {
+    if (before.empty() || std::isdigit(static_cast<unsigned char>(before.back())) == 0) return false;
+    const std::string word(next, std::strcspn(next, " \n\t"));
+    for (const char* unit : {"%", "mm", "ms", "°", "px", "s", "Hz"})
+        if (word.starts_with(unit) && word.find_first_not_of(".,:;)", std::strlen(unit)) == std::string::npos)
+            return true;
+    return word.starts_with("мм") || word.starts_with("мс");
+}
+
 std::vector<Word> words_in(const std::string& text) {
     std::vector<Word> words;
     bool spaced = true, begun = false;
@@ -48,7 +60,11 @@ std::vector<Word> words_in(const std::string& text) {
             spaced = true;
             begun = false;
         } else {
-            if (!begun || breaks_anywhere(code)) words.push_back({"", spaced});
+            const bool unit = !begun && !words.empty() && stays_with_number(words.back().text, at);
+            if (unit)
+                words.back().text += ' ';
+            else if (!begun || breaks_anywhere(code))
+                words.push_back({"", spaced});
             words.back().text.append(at, static_cast<std::size_t>(bytes));
             spaced = false;
             begun = true;

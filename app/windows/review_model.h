@@ -45,7 +45,19 @@ struct ReviewModel {
 
 /// What the person wants of a review.
 struct ReviewWish {
-    enum class Kind { none, frame_before, frame_after, event_before, event_after, begin, end, to_time, pick, quit };
+    enum class Kind {
+        none,
+        frame_before,
+        frame_after,
+        event_before,
+        event_after,
+        begin,
+        end,
+        to_time,
+        pick,
+        snapshot,
+        quit
+    };
     Kind kind = Kind::none;
     double at_s = 0;                        ///< of `to_time`
     Eigen::Vector3d picked_in_ct{0, 0, 0};  ///< of `pick`

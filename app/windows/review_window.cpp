@@ -32,9 +32,12 @@ constexpr StepButton kSteps[] = {
     {Kind::end, "End", "End", GLFW_KEY_END, GLFW_KEY_END},
 };
 
+constexpr const char* kSnapshotKey = "S saves a picture";
+
 Kind step_of(int key) {
     for (const StepButton& step : kSteps)
         if (key == step.key || key == step.other_key) return step.kind;
+    if (key == GLFW_KEY_S) return Kind::snapshot;
     return key == GLFW_KEY_Q || key == GLFW_KEY_ESCAPE ? Kind::quit : Kind::none;
 }
 
@@ -83,8 +86,9 @@ struct ReviewWindow::Parts {
     }
     /// A held key does not run ahead of what is drawn.
     void take_held(int key) {
-        if (const Kind step = step_of(key); step != Kind::none && step != Kind::quit && pressed.empty())
-            pressed.push_back(step);
+        const Kind step = step_of(key);
+        const bool once = step == Kind::quit || step == Kind::snapshot;
+        if (step != Kind::none && !once && pressed.empty()) pressed.push_back(step);
     }
 
     bool must_draw(const std::shared_ptr<const ReviewModel>& model) const {
@@ -155,8 +159,8 @@ struct ReviewWindow::Parts {
         const float time_width = text_width(pen.fonts.number, time) + 8 * s,
                     words = place.title.width - time_width - 20 * s;
         pen.line(pen.fonts.title, model.title, place.title.x + 8 * s, place.title.y + 14 * s, words, pen.theme->text);
-        pen.line(pen.fonts.small, model.subtitle, place.title.x + 8 * s, place.title.y + 44 * s, words,
-                 pen.theme->quiet);
+        const std::string below = model.line ? model.subtitle + " · " + pen.say(kSnapshotKey) : model.subtitle;
+        pen.line(pen.fonts.small, below, place.title.x + 8 * s, place.title.y + 44 * s, words, pen.theme->quiet);
         pen.line(pen.fonts.number, time, place.title.right() - time_width, place.title.y + place.title.height / 2, 0,
                  pen.theme->text);
         draw_cameras(pen, place, model, wish);

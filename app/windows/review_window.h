@@ -13,8 +13,8 @@ namespace planlight {
 ///
 /// Left and right: frame by frame (held: on and on); up and down, or Page Up and Page Down: event by event; Home, End;
 /// the mouse on the time line: to that moment, and its wheel frame by frame; a press on a picture or the head: the
-/// place of the plan there. Z: the whole pictures, or round the plan; V: the head, or the projector's picture; Q or
-/// Escape closes it.
+/// place of the plan there. Z: the whole pictures, or round the plan; V: the head, or the projector's picture; S: a
+/// picture of the window is wanted; Q or Escape closes it.
 class ReviewWindow {
 public:
     /// Throws DeviceError when there is no display, no OpenGL 3.3, or no font.

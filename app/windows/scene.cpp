@@ -77,6 +77,7 @@ struct Scene::Parts {
     SceneView shown_view;
     LetterInsets insets;
     int width = 0, height = 0;
+    double scale = 1;
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     double reach_mm = 120;  ///< half the picture's smaller side at zoom 1
 
@@ -162,9 +163,16 @@ struct Scene::Parts {
         return new_plan || new_light;
     }
 
+    /// In a small picture the head is smaller, so that the letters at the edges do not stand on it.
+    double between_letters() const {
+        constexpr double kOfPicture = 1 / 1.2;  // the head's, as it is measured
+        const double smaller = std::max(1, std::min(width, height));
+        return std::clamp((1 - 2 * SceneOverlay::letters_reach_px(scale) / smaller) / kOfPicture, 0.5, 1.0);
+    }
+
     double distance_mm() const {
         const double narrow = std::min(1.0, static_cast<double>(width) / std::max(1, height));
-        return reach_mm / (std::tan(kHalfAngle) * narrow * shown_view.zoom);
+        return reach_mm / (std::tan(kHalfAngle) * narrow * shown_view.zoom * between_letters());
     }
 
     Eigen::Vector3d focus(const ViewAxes& axes) const {
@@ -226,6 +234,7 @@ bool Scene::update(const SceneModel& scene, const SceneView& view, int width, in
     parts.insets = insets;
     parts.width = width;
     parts.height = height;
+    parts.scale = scale;
     parts.cloud.actor->GetProperty()->SetPointSize(static_cast<float>(std::max(2.0, 2.2 * scale)));
     parts.place_camera();
     parts.overlay.update(scene, view, width, height, scale, words, insets);

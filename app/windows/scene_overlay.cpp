@@ -94,6 +94,12 @@ struct Boxes {
     }
 };
 
+constexpr double kLetter = 32, kLetterGap = 34;  // of a side's letter, from the edge to its middle; at scale 1
+
+double readable(double scale) {
+    return std::max(scale, 0.85);  // smaller letters are not
+}
+
 /// Of the legend, pixels.
 int letters_px(double scale) {
     return std::max(14, static_cast<int>(17 * scale));
@@ -152,8 +158,8 @@ struct SceneOverlay::Parts {
     /// After the legends: the lower letter stands above those that reach below the middle.
     void letters_at_edges(const SceneView& view, int width, int height, double scale, const LetterInsets& insets) {
         const ViewAxes axes = axes_of(view);
-        const int size = static_cast<int>(32 * scale);
-        const double gap = 34 * scale;
+        const int size = static_cast<int>(kLetter * scale);
+        const double gap = kLetterGap * scale;
         letters[0].place(direction_letters(-axes.right_in_ct), insets.left + gap, 0.5 * height, size);
         letters[1].place(direction_letters(axes.right_in_ct), width - insets.right - gap, 0.5 * height, size);
         letters[2].place(direction_letters(axes.up_in_ct), 0.5 * width, height - gap, size);
@@ -197,7 +203,7 @@ struct SceneOverlay::Parts {
         const double w = std::min(std::max(360 * scale, 0.56 * letters_px(scale) * signs_of(caption) + 24 * scale),
                                   width - 32 * scale),
                      x = width - w - 16 * scale, y = 16 * scale, bar = w - 48 * scale;
-        note_legend(x - 8 * scale, 72 * scale + 0.7 * letters_px(scale));
+        note_legend(x - 8 * scale, y + 72 * scale + 0.7 * letters_px(scale));
         if (errors) {
             legend_of_errors(scene, caption, x, y, w, scale);
             return;
@@ -248,6 +254,10 @@ struct SceneOverlay::Parts {
     }
 };
 
+double SceneOverlay::letters_reach_px(double scale) {
+    return (kLetterGap + 0.6 * kLetter) * readable(scale);
+}
+
 SceneOverlay::SceneOverlay(vtkRenderer& renderer, const FontFiles& fonts) : parts_(std::make_unique<Parts>()) {
     parts_->boxes.set_up(renderer);
     for (Text& letter : parts_->letters) letter.set_up(renderer, fonts.bold);
@@ -263,7 +273,7 @@ SceneOverlay::~SceneOverlay() = default;
 void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale,
                           const Words* words, const LetterInsets& insets) {
     parts_->words = words;
-    scale = std::max(scale, 0.85);     // smaller letters are not readable
+    scale = readable(scale);
     if (scene.on_paper) scale *= 1.6;  // the picture is shown at half its size and less
     for (Text& value : parts_->values) value.set_ink(scene.on_paper);
     parts_->title.set_ink(scene.on_paper);

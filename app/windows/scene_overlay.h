@@ -23,6 +23,9 @@ public:
     SceneOverlay(vtkRenderer& renderer, const FontFiles& fonts);
     ~SceneOverlay();
 
+    /// How far the letters reach into the picture from its edges, pixels.
+    static double letters_reach_px(double scale);
+
     /// For a picture of that many pixels; `scale` 1 is for a 1080-line screen.
     void update(const SceneModel& scene, const SceneView& view, int width, int height, double scale,
                 const Words* words = nullptr, const LetterInsets& insets = {});

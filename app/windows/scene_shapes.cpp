@@ -182,7 +182,7 @@ vtkSmartPointer<vtkPolyData> plan_shape(const PlanDrawing& plan, int bright_item
         std::vector<Eigen::Vector3d> points = stroke.points_in_ct;
         for (std::size_t i = 0; i < points.size() && i < stroke.normals_in_ct.size(); ++i)
             points[i] += kAboveSkinMm * stroke.normals_in_ct[i];
-        const bool fine = stroke.kind == StrokeKind::tick;
+        const bool fine = stroke.kind == StrokeKind::tick || stroke.kind == StrokeKind::check_mark;
         add_line(fine ? text : lines, points, stroke.closed, colour(stroke.colour, stroke.item));
     }
     for (const Label& label : plan.labels) {
@@ -241,13 +241,13 @@ vtkSmartPointer<vtkPolyData> light_shape(const std::vector<LightLine>& light) {
 
 vtkSmartPointer<vtkPolyData> marker_shape(const std::vector<SceneMarker>& markers,
                                           const Eigen::Vector3d& middle_in_ct) {
-    constexpr double kDiscMm = 4, kStickerMm = 8;
+    constexpr double kDiscMm = 4;
     Shape shape;
     for (const SceneMarker& marker : markers) {
         Eigen::Vector3d normal = marker.normal_in_ct;
         if (normal.norm() < 0.5) normal = marker.p_in_ct - middle_in_ct;
         normal.normalize();
-        add_disc(shape, marker.p_in_ct + 0.6 * normal, normal, kStickerMm,
+        add_disc(shape, marker.p_in_ct + 0.6 * normal, normal, kStickerRadius_mm,
                  marker.seen ? Rgb{245, 245, 245} : Rgb{140, 140, 140});
         add_disc(shape, marker.p_in_ct + 1.0 * normal, normal, kDiscMm,
                  marker.seen ? Rgb{15, 15, 15} : Rgb{80, 80, 80});

@@ -16,6 +16,7 @@
 
 #include "planning_io/case/slicer_transform.h"
 #include "planning_io/files/json_value.h"
+#include "planning_io/files/keep_to_owner.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/files/xml_text.h"
 #include "planning_io/plan/plan_file.h"
@@ -187,7 +188,7 @@ void fill(const SlicerScene& scene, const fs::path& folder) {
     }
     if (!scene.light.empty()) {
         write_light(scene.light, folder / "light.vtp");
-        mrml.add_model("light", "light.vtp",
+        mrml.add_model("plan on the skin", "light.vtp",
                        "color=\"0.1 0.9 0.3\" lineWidth=\"3\" scalarVisibility=\"true\" activeScalarName=\"colour\" "
                        "activeAttributeLocation=\"cell\" scalarRangeFlag=\"UseDirectMapping\"");
     }
@@ -198,7 +199,11 @@ void fill(const SlicerScene& scene, const fs::path& folder) {
 }  // namespace
 
 void write_slicer_scene(const SlicerScene& scene, const fs::path& folder) {
-    write_folder_safely(folder, false, [&](const fs::path& into) { fill(scene, into); });
+    write_folder_safely(folder, false, [&](const fs::path& into) {
+        keep_to_owner(into);  // the skin is a face
+        fill(scene, into);
+        keep_to_owner(into);
+    });
 }
 
 }  // namespace planlight

@@ -29,10 +29,10 @@ struct SlicerScene {
     std::vector<SlicerLine> light;
 };
 
-/// Writes a new folder that 3D Slicer opens when its scene.mrml is dragged in: skin.vtp and light.vtp in ct, cloud.vtp
-/// in rig under the transform ct_from_rig.tfm, and each item of the plan as plan-N.mrk.json. All in mm; every file says
-/// that it is in LPS, which Slicer turns into its own RAS; the matrix in scene.mrml itself is of RAS, as Slicer has it
-/// there. Throws InputError when the folder is there and not empty, DiskError.
+/// Writes a new folder, its owner's alone, that 3D Slicer opens when its scene.mrml is dragged in: skin.vtp and
+/// light.vtp in ct, cloud.vtp in rig under the transform ct_from_rig.tfm, and each item of the plan as plan-N.mrk.json.
+/// All in mm; every file says that it is in LPS, which Slicer turns into its own RAS; the matrix in scene.mrml itself
+/// is of RAS, as Slicer has it there. Throws InputError when the folder is there and not empty, DiskError.
 void write_slicer_scene(const SlicerScene& scene, const std::filesystem::path& folder);
 
 }  // namespace planlight

@@ -167,7 +167,7 @@ void write_spatial_registration(const DicomStudy& study, const DicomObjectName& 
     series.Set(DC::SeriesInstanceUID, vtkDICOMValue(vtkDICOMVR::UI, study.series_uid));
     series.Set(DC::ReferencedInstanceSequence, vtkDICOMValue(images_of(study)));
     set.items(DC::ReferencedSeriesSequence, sequence_of(series));
-    write_safely(file, compile(meta, kExplicitLittleEndian, file));
+    write_safely(file, compile(meta, kExplicitLittleEndian, file), ReadableBy::owner);
 }
 
 void write_encapsulated_pdf(const DicomStudy& study, const DicomObjectName& name, const std::string& title,
@@ -183,23 +183,24 @@ void write_encapsulated_pdf(const DicomStudy& study, const DicomObjectName& name
     set.text(DC::MIMETypeOfEncapsulatedDocument, vtkDICOMVR::LO, "application/pdf");
     // An even number of bytes; a reader of PDF passes over what follows its last line.
     set.bytes(DC::EncapsulatedDocument, pdf.size() % 2 == 0 ? pdf : pdf + '\n');
-    write_safely(file, compile(meta, kExplicitLittleEndian, file));
+    write_safely(file, compile(meta, kExplicitLittleEndian, file), ReadableBy::owner);
 }
 
 void write_secondary_capture(const DicomStudy& study, const DicomObjectName& name, const std::string& comment,
-                             const RgbImage& picture, bool shows_face, const fs::path& file) {
+                             const RgbImage& picture, const PictureShows& shows, const fs::path& file) {
     std::string pixels(3 * picture.pixels.size(), '\0');
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
         for (std::size_t k = 0; k < 3; ++k) pixels[3 * i + k] = static_cast<char>(picture.pixels[i][k]);
     vtkNew<vtkDICOMMetaData> meta;
-    Elements set = set_head(meta, study, name, kSecondaryCapture, "OT",
-                            fmt::format("{}\n{} {} {}\n", comment, picture.width, picture.height, shows_face) + pixels);
+    Elements set = set_head(
+        meta, study, name, kSecondaryCapture, "OT",
+        fmt::format("{}\n{} {} {} {}\n", comment, picture.width, picture.height, shows.face, shows.words) + pixels);
     set.text(DC::ConversionType, vtkDICOMVR::CS, "WSD");
     set.text(DC::ImageType, vtkDICOMVR::CS, "DERIVED\\SECONDARY");
     set.text(DC::PatientOrientation, vtkDICOMVR::CS, "");
     set.text(DC::ImageComments, vtkDICOMVR::LT, comment);
-    set.text(DC::BurnedInAnnotation, vtkDICOMVR::CS, "NO");
-    set.text(DC::RecognizableVisualFeatures, vtkDICOMVR::CS, shows_face ? "YES" : "NO");
+    set.text(DC::BurnedInAnnotation, vtkDICOMVR::CS, shows.words ? "YES" : "NO");
+    set.text(DC::RecognizableVisualFeatures, vtkDICOMVR::CS, shows.face ? "YES" : "NO");
     set.text(DC::LossyImageCompression, vtkDICOMVR::CS, "00");
     set.number(DC::SamplesPerPixel, 3);
     set.text(DC::PhotometricInterpretation, vtkDICOMVR::CS, "RGB");
@@ -211,7 +212,7 @@ void write_secondary_capture(const DicomStudy& study, const DicomObjectName& nam
     set.number(DC::HighBit, 7);
     set.number(DC::PixelRepresentation, 0);
     set.bytes(DC::PixelData, pixels.size() % 2 == 0 ? pixels : pixels + '\0');
-    write_safely(file, compile(meta, kExplicitLittleEndian, file));
+    write_safely(file, compile(meta, kExplicitLittleEndian, file), ReadableBy::owner);
 }
 
 }  // namespace planlight

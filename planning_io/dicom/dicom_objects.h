@@ -29,9 +29,14 @@ void write_spatial_registration(const DicomStudy& study, const DicomObjectName& 
 void write_encapsulated_pdf(const DicomStudy& study, const DicomObjectName& name, const std::string& title,
                             const std::string& pdf, const std::filesystem::path& file);
 
-/// A picture as a Secondary Capture object (PS3.3 A.8.1), RGB. `shows_face`: Recognizable Visual Features.
+/// What of a patient may be read off a picture: Recognizable Visual Features, and Burned In Annotation.
+struct PictureShows {
+    bool face = true, words = true;
+};
+
+/// A picture as a Secondary Capture object (PS3.3 A.8.1), RGB.
 void write_secondary_capture(const DicomStudy& study, const DicomObjectName& name, const std::string& comment,
-                             const RgbImage& picture, bool shows_face, const std::filesystem::path& file);
+                             const RgbImage& picture, const PictureShows& shows, const std::filesystem::path& file);
 
 /// A UID that is the same whenever it is made of the same text.
 std::string dicom_uid_of(const std::string& content);

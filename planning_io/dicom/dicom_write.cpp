@@ -20,6 +20,19 @@ namespace planlight::dicom_write {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// It holds a patient's data: gone on every way out.
+struct Temporary {
+    std::string name;
+    ~Temporary() {
+        std::error_code ignored;
+        fs::remove(name, ignored);
+    }
+};
+
+}  // namespace
+
 std::string uid_of(const std::string& content) {
     const std::string hex = content_hash(content);
     unsigned __int128 number = 0;
@@ -65,6 +78,7 @@ std::string compile(vtkDICOMMetaData* meta, const char* transfer_syntax, const f
     if (fd < 0)
         throw DiskError(file, "could not be written (no temporary file)",
                         "Make room in the folder for temporary files.");
+    const Temporary temporary{name};
     close(fd);
     vtkNew<vtkDICOMCompiler> compiler;
     compiler->SetFileName(name.c_str());
@@ -78,12 +92,9 @@ std::string compile(vtkDICOMMetaData* meta, const char* transfer_syntax, const f
     if (const vtkDICOMValue& pixels = meta->Get(DC::PixelData); pixels.IsValid())
         compiler->WritePixelData(pixels.GetUnsignedCharData(), static_cast<vtkIdType>(pixels.GetNumberOfValues()));
     compiler->Close();
-    const bool good = compiler->GetErrorCode() == 0;
-    const std::string bytes = good ? read_whole(name) : std::string();
-    std::error_code ignored;
-    fs::remove(name, ignored);
-    if (!good) throw DiskError(file, "could not be written", "Make room in the folder for temporary files.");
-    return bytes;
+    if (compiler->GetErrorCode() != 0)
+        throw DiskError(file, "could not be written", "Make room in the folder for temporary files.");
+    return read_whole(name);
 }
 
 }  // namespace planlight::dicom_write

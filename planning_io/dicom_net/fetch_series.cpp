@@ -4,6 +4,7 @@
 
 #include "planning_io/dicom_net/incoming_images.h"
 #include "planning_io/dicom_net/move_series.h"
+#include "planning_io/files/keep_to_owner.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
@@ -115,12 +116,13 @@ std::size_t fetch_series(const DicomPeer& peer, const FoundSeries& series, const
                          "Look with `planlight fetch` what it has.");
     std::size_t came = 0;
     write_folder_safely(folder, false, [&](const fs::path& into) {
-        fs::permissions(into, fs::perms::owner_all);  // it names the patient
+        keep_to_owner(into);  // it names the patient
         IncomingImages incoming(images, into, progress);
         std::string refusal;
         if (!Getter(peer, images, incoming).get(series, refusal)) move_series(peer, series, images, incoming, refusal);
         incoming.sync();
         check_still_the_same(peer, series, images);
+        keep_to_owner(into);
         came = incoming.came();
     });
     return came;

@@ -9,7 +9,7 @@
 namespace planlight {
 namespace {
 
-constexpr std::size_t kWindow = std::size_t{1} << 17;
+constexpr std::size_t kAfterAJump = std::size_t{1} << 13, kWindow = std::size_t{1} << 17;
 
 }  // namespace
 
@@ -36,9 +36,12 @@ std::string_view FileWindow::bytes(std::uint64_t at, std::size_t count) {
     failed_ = false;
     if (at < from_ || at + count > from_ + filled_) {
         if (count > window_.size()) window_.resize(count);
-        const std::size_t wanted = std::max(count, kWindow);
+        const bool goes_on = filled_ > 0 && at >= from_ && at <= from_ + filled_;
+        piece_ = goes_on ? std::min(2 * piece_, kWindow) : kAfterAJump;
+        const std::size_t wanted = std::max(count, piece_);
         from_ = at;
         filled_ = read(at, window_.data(), wanted);
+        read_ += filled_;
         if (filled_ >= count) failed_ = false;  // what was asked for is there
     }
     return {window_.data() + (at - from_), std::min(count, filled_ - static_cast<std::size_t>(at - from_))};

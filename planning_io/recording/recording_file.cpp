@@ -11,8 +11,8 @@
 #include <stdexcept>
 
 #include "planning_io/files/checked_chunks.h"
+#include "planning_io/files/disk_refusal.h"
 #include "planning_io/recording/recording_chunk.h"
-#include "planning_io/types/error.h"
 
 namespace planlight {
 namespace {
@@ -30,10 +30,11 @@ std::uint32_t crc_of(std::string_view a, std::string_view b = {}) {
 [[noreturn]] void refuse(const fs::path& file, const std::string& doing) {
     const int code = errno;
     const bool no_room = code == ENOSPC || code == EDQUOT || code == EFBIG;
-    throw DiskError(file, doing + ": " + std::strerror(code),
-                    std::string(no_room ? "Make room on the disk" : "Look at the folder and its permissions") +
-                        ", name another folder with `planlight session --recordings`, or do without: "
-                        "`planlight session --record none`.");
+    throw DiskRefusal(file, doing + ": " + std::strerror(code),
+                      std::string(no_room ? "Make room on the disk" : "Look at the folder and its permissions") +
+                          ", name another folder with `planlight session --recordings`, or do without: "
+                          "`planlight session --record none`.",
+                      std::error_code(code, std::generic_category()));
 }
 
 /// The names in a folder are on the disk afterwards: without that a power cut may leave a file's bytes and no name.

@@ -4,11 +4,21 @@
 
 #include <exception>
 
-#include "planning_io/types/error.h"
+#include "planning_io/files/disk_refusal.h"
 
 namespace planlight {
 
 using Wall = std::chrono::steady_clock;
+
+namespace {
+
+RecordingState::Problem problem_of(const std::exception& fault) {
+    if (const auto* refusal = dynamic_cast<const DiskRefusal*>(&fault)) return {fault.what(), refusal->why.message()};
+    const bool by_disk = dynamic_cast<const DiskError*>(&fault) != nullptr;
+    return {fault.what(), by_disk ? "the disk refuses it" : fault.what()};
+}
+
+}  // namespace
 
 RecordingWriter::RecordingWriter(std::unique_ptr<RecordingSink> sink, const RecordingWriterSettings& settings)
     : sink_(std::move(sink)), settings_(settings), synced_at_(Wall::now()), thread_([this] { run(); }) {}
@@ -133,10 +143,10 @@ RecordingWriter::Written RecordingWriter::try_to_write(Waiting& piece) {
         put(piece.chunk);
         return Written::yes;
     } catch (const DiskError& fault) {
-        note_problem(fault.what());
+        note_problem(fault);
         return Written::not_yet;
     } catch (const std::exception& fault) {
-        note_problem(fault.what());
+        note_problem(fault);
         return is_own_word(piece) ? Written::not_yet : Written::never;
     }
 }
@@ -184,7 +194,7 @@ void RecordingWriter::put(const RecordingChunk& chunk) {
     const std::lock_guard lock(mutex_);
     ++state_.written_chunks;
     state_.written_bytes += bytes.size();
-    state_.problem.clear();
+    state_.problem = {};
 }
 
 void RecordingWriter::sync_now_and_then() {
@@ -200,13 +210,13 @@ void RecordingWriter::sync() {
         sink_->sync();
     } catch (const std::exception& fault) {
         const std::lock_guard lock(mutex_);
-        if (state_.sync_problem.empty()) state_.sync_problem = fault.what();
+        if (state_.sync_problem.empty()) state_.sync_problem = problem_of(fault);
     }
 }
 
-void RecordingWriter::note_problem(const std::string& problem) {
+void RecordingWriter::note_problem(const std::exception& fault) {
     const std::lock_guard lock(mutex_);
-    state_.problem = problem;
+    state_.problem = problem_of(fault);
 }
 
 }  // namespace planlight

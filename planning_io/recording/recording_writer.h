@@ -30,8 +30,14 @@ struct RecordingState {
     std::uint64_t written_chunks = 0, written_bytes = 0;
     std::uint64_t dropped_chunks = 0, dropped_bytes = 0;
     std::size_t waiting_bytes = 0;
-    std::string problem;       ///< why nothing is written now, in words; empty while all is well
-    std::string sync_problem;  ///< why what was written may not be on the disk (the first time); empty: it is
+    /// Why something does not go its way: with the file, for who looks after the disk, and in a few words without it,
+    /// for who looks at the patient. Empty while all is well.
+    struct Problem {
+        std::string whole, in_few_words;
+        bool empty() const { return whole.empty(); }
+    };
+    Problem problem;       ///< why nothing is written now
+    Problem sync_problem;  ///< why what was written may not be on the disk (the first time)
 };
 
 /// Writes a recording from a thread of its own, so that no disk, full, slow or gone, ever delays who hands the pieces
@@ -77,7 +83,7 @@ private:
     void put(const RecordingChunk& chunk);
     void sync_now_and_then();
     void sync();
-    void note_problem(const std::string& problem);
+    void note_problem(const std::exception& fault);
 
     std::unique_ptr<RecordingSink> sink_;
     RecordingWriterSettings settings_;

@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 
 constexpr double kMostMagnitude_mm = 1e4, kShortest_mm = 10, kLongest_mm = 3000;
 constexpr float kAirBelow_hu = -705;  // where a CT's air is looked for: segmentation/skin_threshold.cpp
-constexpr double kLeastAirShare = 0.001;
+constexpr float kDenserThanAir_hu = -300;
+constexpr double kLeastAirShare = 0.001, kLeastBody_percent = 0.2;
 constexpr const char* kExportAgain = "Export the volume again from the scanner or the archive.";
 
 /// Every voxel, or every few of a large volume.
@@ -28,9 +29,15 @@ std::vector<float> sample_of(const Volume& volume) {
     return sample;
 }
 
+/// How many of a hundred are at `level` or above; 0 of none.
+double percent_from(const std::vector<float>& sample, double level) {
+    const auto from = std::ranges::count_if(sample, [&](float v) { return v >= level; });
+    return sample.empty() ? 0 : 100.0 * static_cast<double>(from) / static_cast<double>(sample.size());
+}
+
 /// Between air and body: -300 HU, or for other values the level that parts them best (Otsu 1979).
 double air_level(const Volume& volume, const std::vector<float>& sample, float low, float high) {
-    if (volume.is_hu) return -300;
+    if (volume.is_hu) return kDenserThanAir_hu;
     constexpr int kBins = 256;
     std::vector<double> bins(kBins, 0);
     const double width = (static_cast<double>(high) - low) / kBins;
@@ -127,12 +134,15 @@ bool has_air_in_hu(const Volume& volume, const std::vector<char>& left_out) {
 
 void tell_modality_by_values(Volume& volume) {
     const float least = *std::min_element(volume.values.begin(), volume.values.end());
-    volume.is_hu = has_air_in_hu(volume);
+    const bool has_air = has_air_in_hu(volume);
+    // An MR from which 1024 was taken has air like that of HU, and hardly anything denser.
+    volume.is_hu = has_air && percent_from(sample_of(volume), kDenserThanAir_hu) >= kLeastBody_percent;
     volume.modality = volume.is_hu ? "CT" : "MR";
-    volume.notes.push_back(fmt::format(
-        "the file does not say whether it is CT or MR: taken for {} (its least value is {:.0f}, and the air of a "
-        "CT in HU near -1000)",
-        volume.modality, least));
+    const char* const why = has_air && !volume.is_hu ? "hardly anything in it is denser than the air of a CT in HU"
+                                                     : "the air of a CT in HU near -1000";
+    volume.notes.push_back(
+        fmt::format("the file does not say whether it is CT or MR: taken for {} (its least value is {:.0f}, and {})",
+                    volume.modality, least, why));
 }
 
 void check_for_skin(const Volume& volume, const fs::path& file) {
@@ -143,10 +153,11 @@ void check_for_skin(const Volume& volume, const fs::path& file) {
     const auto [low, high] = std::minmax_element(sample.begin(), sample.end());
     if (sample.empty() || *low == *high) refuse(fmt::format("every voxel is {:.0f}", sample.empty() ? 0 : *low));
     const double level = air_level(volume, sample, *low, *high);
-    const auto body = std::count_if(sample.begin(), sample.end(), [&](float v) { return v >= level; });
-    const double share = 100.0 * static_cast<double>(body) / static_cast<double>(sample.size());
-    if (share < 0.2) refuse(fmt::format("only {:.2f} % of the voxels are denser than air ({:.0f})", share, level));
-    if (share > 99.8) refuse(fmt::format("only {:.2f} % of the voxels are air (below {:.0f})", 100 - share, level));
+    const double share = percent_from(sample, level);
+    if (share < kLeastBody_percent)
+        refuse(fmt::format("only {:.2f} % of the voxels are denser than air ({:.0f})", share, level));
+    if (share > 100 - kLeastBody_percent)
+        refuse(fmt::format("only {:.2f} % of the voxels are air (below {:.0f})", 100 - share, level));
     if (sides_with_air(volume, level) == 0)
         refuse(fmt::format("the body fills the volume to all six sides ({:.0f} % of it is denser than {:.0f})", share,
                            level));

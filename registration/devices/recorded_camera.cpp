@@ -32,7 +32,7 @@ RecordedCamera::~RecordedCamera() {
 }
 
 std::vector<std::string> RecordedCamera::notes() const {
-    return {fmt::format("no camera looks: it plays the recording \"{}\"", settings_.from)};
+    return {fmt::format("No camera looks: it plays the recording \"{}\"", settings_.from)};
 }
 
 void RecordedCamera::run(const std::stop_token& stop) {

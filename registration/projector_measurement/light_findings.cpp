@@ -107,7 +107,7 @@ std::string meaning_of(const CycleResult& result) {
     std::string text;
     const CycleRun& room = result.runs.front();
     const auto size = [](double variation, double sigma, bool told) {
-        return told ? fmt::format("by {:.1f} +- {:.1f} %", 100 * variation, 100 * sigma)
+        return told ? fmt::format("by {:.1f} ± {:.1f} %", 100 * variation, 100 * sigma)
                     : fmt::format("by {:.1f} % in the part of the cycle that these frames met", 100 * variation);
     };
     text += room.varies ? fmt::format("The room's lamps flicker {} of their light",
@@ -193,7 +193,7 @@ std::vector<LightFinding> findings_of(const LatencyResult& r) {
 
 std::string meaning_of(const LatencyResult& r) {
     std::string text = fmt::format(
-        "From order to light {:.1f} +- {:.1f} ms, with a spread of {:.1f} ms from picture to picture (standard "
+        "From order to light {:.1f} ± {:.1f} ms, with a spread of {:.1f} ms from picture to picture (standard "
         "deviation); "
         "the latest seen came after {:.1f} ms.",
         1e3 * r.median_s, 1e3 * r.median_sigma_s, 1e3 * r.jitter_s, 1e3 * r.latest_s);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/recording/anonymous.h"
+#include "app/recording/recorded_inputs.h"
 #include "app/recording/recording_head.h"
 #include "planning_io/recording/packed_pictures.h"
 #include "planning_io/recording/recording_file.h"
@@ -99,6 +100,34 @@ TEST(Anonymous, LeavesFiguresTimesAndWordsAsTheyAre) {
     EXPECT_EQ(out["items"][0], "item 1");
 }
 
+/// Scanners write MEIER^HANS, people Meier: each part is left out, and the words that are spelt as it are not.
+TEST(Anonymous, PartsOfANamePeopleAndFoldersAreLeftOutAndWordsSpeltAlikeAreNot) {
+    Case the_case;
+    the_case.code = "1234-abcd";
+    the_case.names.patient = "MEIER-LONG^ÄNNE^^DR";
+    the_case.plan.boreholes.resize(1);
+    the_case.plan.boreholes[0].name = "Annes hole";
+    NamesLeftOut names(the_case);
+    names.add_person("Dr. Xaver Light");
+    names.add_person("or-kranich");
+    names.add_person("王^小明");
+    names.add_place("/srv/cases/m17/");
+    const auto without = [&](const char* text) { return names.text_without(text); };
+    EXPECT_EQ(without("Meier lies still, änne too"), "… lies still, änne too") << "small: a word, if it were one";
+    EXPECT_EQ(without("Änne Meiers scan"), "… …s scan");
+    EXPECT_EQ(without("/home/xaver/scan.ply and /srv/cases/m17/plan.json"), "/home/…/scan.ply and …/plan.json");
+    EXPECT_EQ(without("a long way, the light of a meiersche pole"), "a long way, the light of a meiersche pole");
+    EXPECT_EQ(without("Light on the skin"), "Light on the skin") << "our own word names nobody";
+    EXPECT_EQ(without("Xaver's camera at KRANICH is away"), "…'s camera at … is away");
+    EXPECT_EQ(without("found 小明, by 王"), "found …, by …") << "such letters are neither large nor small";
+    EXPECT_EQ(without("\"Annes hole\" is out of the light"), "\"item 1\" is out of the light") << "before any match";
+    const auto room = nlohmann::json::parse(
+        names.out_of_room(R"({"name":"Theatre of Prof. Huber","notes":["ask Huber"],"rig_hash":"ab"})"));
+    EXPECT_EQ(room["name"], "");
+    EXPECT_TRUE(room["notes"].empty());
+    EXPECT_EQ(room["rig_hash"], "ab");
+}
+
 /// A session in the simulated room, recorded without names and faces.
 TEST(AnonymousRecording, HoldsNoNameAndNoFace) {
     if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";
@@ -110,16 +139,18 @@ TEST(AnonymousRecording, HoldsNoNameAndNoFace) {
     for (auto& hole : named.plan.boreholes) hole.name = "Xaverl's " + hole.name;
     {
         RecordingHead head = recording_head(named, "/home/xaverl/cases", RecordMode::events, {});
-        SessionRecorder recorder(std::make_unique<RecordingFile>(file), without_names(head), {}, {},
-                                 NamesLeftOut(named));
+        NamesLeftOut names(named);
+        names.add_place(head.case_folder);
+        SessionRecorder recorder(std::make_unique<RecordingFile>(file), without_names(head), {}, {}, names);
         test::PlayedSession how;
         how.seed = 31;
         how.updates = 20;
+        how.doubt = "Xaverl's camera, of /home/xaverl/cases/rig.json, is late";
         test::play_session(how, patient, &recorder);
     }
     RecordingReader reader(file);
     int frames = 0, sharp = 0;
-    bool items_named = false;
+    bool items_named = false, doubted = false;
     while (const auto chunk = reader.next()) {
         EXPECT_NE(chunk->type, chunk_types::kMatch);
         EXPECT_NE(chunk->type, chunk_types::kPicture) << "the names of the items stand in it as light";
@@ -127,6 +158,11 @@ TEST(AnonymousRecording, HoldsNoNameAndNoFace) {
             chunk->type == chunk_types::kRoom) {
             EXPECT_EQ(chunk->payload.find("averl"), std::string::npos) << chunk->payload.substr(0, 300);
             items_named |= chunk->payload.find("\"item 2\"") != std::string::npos;
+        }
+        if (chunk->type == chunk_types::kInputs) {
+            EXPECT_EQ(chunk->payload.find("averl"), std::string::npos) << "a device may name a file";
+            for (const RecordedInput& input : unpacked_inputs(chunk->payload, file))
+                doubted |= input.kind == RecordedInput::Kind::doubt && input.text.ends_with("is late");
         }
         if (chunk->type != chunk_types::kFrame) continue;
         ++frames;
@@ -140,6 +176,7 @@ TEST(AnonymousRecording, HoldsNoNameAndNoFace) {
         EXPECT_LT(share, 0.35) << "the example's plan covers less than a third of the picture";
         sharp += share > 0.01;
     }
+    EXPECT_TRUE(doubted);
     EXPECT_TRUE(items_named) << "of items without a name there is nothing to be left out";
     EXPECT_GT(frames, 3);
     EXPECT_GT(sharp, 0) << "round the plan the light can be looked at";

@@ -2,12 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "app/export/export_study.h"
-#include "app/prepare_case.h"
+#include "app/report/operation_pdf.h"
 #include "planning_io/volume/read_volume.h"
+#include "tests/app/exported_phantom.h"
 #include "tests/app/run_command.h"
 #include "tests/planning_io/dicom_net/archive_process.h"
 #include "tests/planning_io/synthetic_series.h"
@@ -17,24 +18,19 @@ namespace planlight {
 namespace {
 
 namespace fs = std::filesystem;
-using Eigen::Vector3d;
 using test::run_planlight;
 
-/// A place on the phantom's front.
-Vector3d place() {
-    Vector3d at{20, -96, 0};
-    while (at.y() < 0 && test::phantom_hu(at) < -300) at.y() += 0.5;
-    return at;
-}
-
-ExportedOperation invented_match(const Case& the_case) {
-    ExportedOperation operation;
-    operation.match.verdict = Verdict::yes;
-    operation.match.patient_from_ct = Eigen::Translation3d(12, -340, 901) * RigidTransform::Identity();
-    operation.match.of_case = name_of(the_case);
-    operation.match.covariance.of_turn_and_shift.setIdentity();
-    operation.made = "2026-01-02T09:30:00Z";
-    return operation;
+/// How many objects lie there; none of them lacks what the standard asks of its kind.
+int look_at_all(const fs::path& folder) {
+    int objects = 0;
+    for (const auto& file : fs::directory_iterator(folder)) {
+        ++objects;
+        const fs::path said = folder.parent_path() / "said";
+        const std::string command = "dciodvfy '" + file.path().string() + "' > '" + said.string() + "' 2>&1";
+        EXPECT_NE(std::system(command.c_str()), -1);
+        EXPECT_EQ(test::whole(said).find("Error"), std::string::npos) << test::whole(said);
+    }
+    return objects;
 }
 
 class ArchiveCommands : public ::testing::Test {
@@ -71,23 +67,30 @@ TEST_F(ArchiveCommands, ASeriesBecomesACaseAndWhatCameOfItIsFoundBesideIt) {
     const auto fetched = run("fetch --series " + series[0]["series_uid"].get<std::string>() + " --out got");
     ASSERT_EQ(fetched.exit_code, 0) << fetched.err;
 
-    Plan plan;
-    plan.boreholes.push_back({"hole", place(), Vector3d(0, 1, 0), 7, 5, {}});
-    const Volume volume = read_volume(folder_.path() / "got");
-    EXPECT_EQ(hash_of(volume), hash_of(read_volume(folder_.path() / "series")));
-    const Case prepared = prepare_case(volume, plan, {}, {}, "2026-01-02").prepared;
-    export_into_study(prepared, invented_match(prepared), folder_.path() / "got", {}, folder_.path() / "for-pacs");
+    const test::ExportedPhantom& phantom = test::exported_phantom();
+    EXPECT_EQ(hash_of(read_volume(folder_.path() / "got")), hash_of(read_volume(folder_.path() / "series")));
+    export_into_study(phantom.prepared, phantom.operation, folder_.path() / "got", {}, folder_.path() / "for-pacs");
     const auto sent = run("store for-pacs");
     ASSERT_EQ(sent.exit_code, 0) << sent.err;
 
     const auto study = run("fetch --study " + series[0]["study_uid"].get<std::string>() + " --json");
-    std::set<std::string> modalities;
+    std::map<std::string, std::string> series_of;
     for (const auto& one : nlohmann::json::parse(study.out)) {
-        modalities.insert(one["modality"].get<std::string>());
+        series_of[one["modality"]] = one["series_uid"];
         EXPECT_EQ(one["patient_id"], "PHANTOM-1");
     }
-    EXPECT_TRUE(modalities.contains("CT"));
-    EXPECT_TRUE(modalities.contains("REG"));
+    for (const auto& [modality, objects] : {std::pair{"REG", 1}, {"DOC", 1}, {"OT", 5}}) {
+        ASSERT_TRUE(series_of.contains(modality)) << study.out;
+        const auto back = run("fetch --series " + series_of[modality] + " --out back-" + modality);
+        ASSERT_EQ(back.exit_code, 0) << back.err;
+        EXPECT_EQ(look_at_all(folder_.path() / (std::string("back-") + modality)), objects) << modality;
+    }
+    const fs::path document = fs::directory_iterator(folder_.path() / "back-DOC")->path(),
+                   pdf = folder_.path() / "back.pdf";
+    if (std::system(("dcm2pdf '" + document.string() + "' '" + pdf.string() + "'").c_str()) != 0)
+        GTEST_SKIP() << "dcmtk is not installed";
+    const std::string wanted = operation_pdf(*phantom.operation.facts);
+    EXPECT_EQ(test::whole(pdf).substr(0, wanted.size()), wanted) << "the report as it was written";
 }
 
 TEST_F(ArchiveCommands, RefusalsHaveTheirExitCodes) {

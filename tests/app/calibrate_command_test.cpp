@@ -36,6 +36,9 @@ TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
     const std::string page = whole(root / "rig-calibration.html");
     EXPECT_NE(page.find("Predicted error over the working volume"), std::string::npos);
     EXPECT_EQ(page.find("http"), std::string::npos) << "nothing comes from a network";
+    EXPECT_NE(page.find("0 mm</text>"), std::string::npos) << "the colours have a scale";
+    EXPECT_NE(page.find("</i>pose-01</span>"), std::string::npos) << "and the poses' colours a key";
+    EXPECT_EQ(page.find("not a medical device"), page.rfind("not a medical device")) << "it is said once";
 
     EXPECT_EQ(rig["left_camera"]["serial"], "L-1");
     EXPECT_EQ(report["devices"]["projector"]["serial"], "P-9");

@@ -67,6 +67,18 @@ TEST_F(CommandLineTest, WhatIsReadIsNeverWrittenOver) {
         EXPECT_EQ(whole(folder_ / name), "kept") << name;
 }
 
+TEST_F(CommandLineTest, APdfIsCalledSoAndStandsWhereItCanBeWritten) {
+    for (const std::string line :
+         {"prepare volume.nii --plan p.fcsv --out case", "register case --cloud c.ply --out r.json",
+          "calibrate captures --board 'charuco 10x7 25 mm'", "projector recording",
+          "demo --headless --volume volume.nii", "report a.plrec"}) {
+        expect_refused(run(line + " --pdf page.html"), 3, "page.html");
+        EXPECT_NE(run(line.substr(0, line.find(' ')) + " --help").out.find("--pdf"), std::string::npos) << line;
+    }
+    expect_refused(run("projector --identify --pdf page.pdf"), 2, "--pdf");
+    expect_refused(run("projector recording --pdf none/page.pdf"), 7, "none");
+}
+
 TEST_F(CommandLineTest, AMistypedCommandIsToldTheNearestOne) {
     expect_refused(run("regsiter case"), 2, "Is register meant?");
     expect_refused(run("Demo"), 2, "Is demo meant?");
@@ -122,7 +134,8 @@ TEST_F(CommandLineTest, AFolderThatCannotBeMadeIsAMatterOfTheDiskHoweverDeep) {
 }
 
 TEST_F(CommandLineTest, SettingsOfTheSiteAreReadAndSaid) {
-    write_settings(R"({"format": "planlight config", "version": 1, "units": "cm", "surgeon_side": "head",
+    write_settings(
+        R"({"format": "planlight config", "version": 1, "units": "cm", "surgeon_side": "head", "paper": "Letter",
                        "monitors": {"operator": "DP-1"}, "notes": "theatre 2"})");
     const auto with = run("board --verbose");
     EXPECT_EQ(with.exit_code, 0) << with.err;
@@ -136,6 +149,8 @@ TEST_F(CommandLineTest, SettingsThatAreNoneAreRefusedByName) {
     expect_refused(run("board"), 3, "\"feet\"");
     write_settings(R"({"format": "planlight config", "version": 1, "monitors": {"operater": "DP-1"}})");
     expect_refused(run("board"), 3, "operater");
+    write_settings(R"({"format": "planlight config", "version": 1, "paper": "A5"})");
+    expect_refused(run("board"), 3, "\"Letter\"");
     write_settings("{");
     expect_refused(run("board"), 4, "config.json");
 }

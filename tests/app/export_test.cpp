@@ -3,6 +3,7 @@
 #include <gdcmImageReader.h>
 #include <gdcmReader.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <ctime>
@@ -11,6 +12,7 @@
 #include <sstream>
 
 #include "app/export/export_study.h"
+#include "app/report/registration_certificate.h"
 #include "planning_io/dicom/dicom_objects.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
@@ -118,6 +120,49 @@ TEST_F(Export, ThePdfIsOneAndThePictureHasItsPixels) {
     EXPECT_EQ(pixels.substr(0, 3), std::string("\0\xff\0", 3));
 }
 
+TEST_F(Export, WhatShowsTheLightMayShowANameInIt) {
+    // The match and its error are drawn; cameras and projector hold the light, and so its labels and the name card.
+    const char* const wanted[] = {"NO", "NO", "YES", "YES", "YES"};
+    for (int i = 1; i <= 5; ++i) {
+        gdcm::Reader reader;
+        reader.SetFileName((exported() / ("picture-" + std::to_string(i) + ".dcm")).c_str());
+        ASSERT_TRUE(reader.Read());
+        gdcm::Attribute<0x0028, 0x0301> burned_in;
+        burned_in.SetFromDataSet(reader.GetFile().GetDataSet());
+        const std::string said = burned_in.GetValue();
+        EXPECT_EQ(said.substr(0, said.find(' ')), wanted[i - 1]) << "picture " << i;
+        gdcm::Attribute<0x0028, 0x0302> features;
+        features.SetFromDataSet(reader.GetFile().GetDataSet());
+        EXPECT_EQ(std::string(features.GetValue()).substr(0, 3), "YES") << "a face, picture " << i;
+    }
+}
+
+/// Name and face are in all of it. What lay there before is as its owner wants it.
+TEST_F(Export, IsItsOwnersAloneWhateverTheUmaskAndTheFolderItLiesInStaysAsItWas) {
+    const auto perms = [](const fs::path& of) { return fs::status(of).permissions(); };
+    for (const mode_t umask : {022, 077, 0}) {
+        SCOPED_TRACE(umask);
+        const fs::path parent = world().folder.path() / ("umask-" + std::to_string(umask));
+        fs::create_directory(parent);
+        fs::permissions(parent, fs::perms(0755));
+        const mode_t was = ::umask(umask);
+        export_into_study(world().prepared, world().operation, world().series, {}, parent / "dicom");
+        export_for_slicer(world().prepared, world().operation, parent / "slicer");
+        fs::create_directory(parent / "registrations");
+        const fs::perms of_matches = perms(parent / "registrations");
+        const fs::path kept =
+            keep_match(world().operation.match, &*world().operation.cloud, {}, parent / "registrations");
+        ::umask(was);
+        for (const fs::path& folder : {parent / "dicom", parent / "slicer", kept}) {
+            EXPECT_EQ(perms(folder), fs::perms(0700)) << folder;
+            for (const auto& file : fs::directory_iterator(folder))
+                EXPECT_EQ(perms(file.path()), fs::perms(0600)) << file;
+        }
+        EXPECT_EQ(perms(parent), fs::perms(0755));
+        EXPECT_EQ(perms(parent / "registrations"), of_matches);
+    }
+}
+
 TEST_F(Export, TheSameIsTheSameObject) {
     const fs::path again = world().folder.path() / "again";
     export_into_study(world().prepared, world().operation, world().series, {}, again);
@@ -133,7 +178,7 @@ TEST_F(Export, OtherBytesTitleOrProgramAreAnotherObject) {
     fs::create_directory(folder);
     DicomObjectName name{"2026-03-14T09:30:00Z", "1.0", "pictures", "Pictures", 1, 1, "the same hashes"};
     const auto picture = [&](const DicomObjectName& called, const std::string& comment, Rgb colour) {
-        write_secondary_capture(study, called, comment, RgbImage(4, 4, colour), true, folder / "picture.dcm");
+        write_secondary_capture(study, called, comment, RgbImage(4, 4, colour), {}, folder / "picture.dcm");
         return uid_of(folder / "picture.dcm");
     };
     const auto pdf = [&](const std::string& title, const std::string& bytes) {
@@ -162,7 +207,7 @@ TEST_F(Export, ItsTimesAreThoseOfTheClockOnTheWallAsTheScannersAre) {
     tzset();
     const DicomObjectName name{"2026-03-14T20:30:05Z", "1.0", "pictures", "Pictures", 1, 1, "x"};
     const fs::path file = world().folder.path() / "time.dcm";
-    write_secondary_capture(read_dicom_study(world().series), name, "a", RgbImage(4, 4, {1, 2, 3}), true, file);
+    write_secondary_capture(read_dicom_study(world().series), name, "a", RgbImage(4, 4, {1, 2, 3}), {}, file);
     was ? setenv("TZ", zone.c_str(), 1) : unsetenv("TZ");
     tzset();
     gdcm::Reader reader;

@@ -1,6 +1,10 @@
 // How soon an hour's recording is shown, and its last match found: the updates and frames of a short session are
-// written again and again, later each time, until they make an hour. measure_review [MINUTES]
+// written again and again, later each time, until they make an hour. Each step begins with nothing of the file in
+// memory. measure_review [MINUTES] [all]; `all`: with every frame, as `session --record all` keeps them (0.4 GB a
+// minute)
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <fstream>
@@ -32,16 +36,26 @@ std::string later(const std::string& text, Instant by) {
            text.substr(end);
 }
 
+/// The system forgets what it has of the file: the next to read it waits for the disk.
+void forget(const fs::path& file) {
+    const int opened = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (opened < 0) return;
+    ::fsync(opened);
+    ::posix_fadvise(opened, 0, 0, POSIX_FADV_DONTNEED);
+    ::close(opened);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     const double minutes = argc > 1 ? std::stod(argv[1]) : 60;
+    const bool all = argc > 2 && std::string(argv[2]) == "all";
     if (!test::example_case().there) return 77;
     const test::TemporaryFolder folder;
     const fs::path brief = folder.path() / "brief.plrec", file = folder.path() / "long.plrec";
     test::PlayedSession how;
     how.updates = 150;
-    test::record_session(how, test::example_case(), RecordMode::events, brief);
+    test::record_session(how, test::example_case(), all ? RecordMode::all : RecordMode::events, brief);
     std::vector<RecordingChunk> head, body;
     RecordingReader reader(brief);
     while (auto chunk = reader.next()) {
@@ -57,23 +71,30 @@ int main(int argc, char** argv) {
     for (Instant by{}; seconds(by) < 60 * minutes; by += lasts) {
         int frames = 0;
         for (const auto& chunk : body) {
-            if (chunk.type == chunk_types::kFrame && ++frames > 0.7 * seconds(lasts)) continue;
+            if (!all && chunk.type == chunk_types::kFrame && ++frames > 0.7 * seconds(lasts)) continue;
             out << chunk_bytes({chunk.type, chunk.at + by,
                                 chunk.type == chunk_types::kEvent ? later(chunk.payload, by) : chunk.payload},
                                number++);
         }
     }
     out.close();
+    forget(file);
     auto began = std::chrono::steady_clock::now();
-    const RecordingTimeLine line = time_line_of(file);
+    RecordingTimeLine line = time_line_of(file);
     const double read_s = elapsed_s(began);
     const std::string page = review_page(line, {});
     const double page_s = elapsed_s(began);
+    forget(file);
+    began = std::chrono::steady_clock::now();
+    look_at_pictures(line, file);
+    const double look_s = elapsed_s(began);
+    forget(file);
     began = std::chrono::steady_clock::now();
     RecordedMoments moments(file, line);
     const bool pictures = !moments.moment(line.frames_s.size() - 1).frame.left.empty();
     const double frame_s = elapsed_s(began);
     began = std::chrono::steady_clock::now();
+    forget(file);
     double first_picture_s = 0, desk_s = 0;
     {
         ReviewDesk desk(file, folder.path() / "no-case", line.lasted_s / 2);
@@ -83,15 +104,17 @@ int main(int argc, char** argv) {
             if (model->settled) desk_s = elapsed_s(began);
         }
     }
+    forget(file);
     began = std::chrono::steady_clock::now();
     const bool match = last_match_of(file).match.has_value();
     fmt::print(
-        "{:.1f} min, {:.2f} GB, {} chunks, {} frames: time line {:.2f} s, with its page ({:.0f} kB) {:.2f} s; the last "
+        "{:.1f} min, {:.2f} GB, {} chunks, {} frames: time line {:.2f} s, with its page ({:.0f} kB) {:.2f} s, all its "
+        "pictures looked at {:.2f} s; the last "
         "frame ({}) {:.3f} s; its window has a first picture after {:.2f} s, and the middle of the hour after {:.2f} "
         "s; the "
         "last match ({}) {:.2f} s\n",
         line.lasted_s / 60, static_cast<double>(fs::file_size(file)) / 1e9, number, line.frames_s.size(), read_s,
-        static_cast<double>(page.size()) / 1e3, page_s, pictures ? "read" : "empty", frame_s, first_picture_s, desk_s,
-        match ? "found" : "none", elapsed_s(began));
+        static_cast<double>(page.size()) / 1e3, page_s, look_s, pictures ? "read" : "empty", frame_s, first_picture_s,
+        desk_s, match ? "found" : "none", elapsed_s(began));
     return 0;
 }

@@ -55,7 +55,7 @@ protected:
         SessionRecorder recorder(std::make_unique<RecordingFile>(file),
                                  recording_head(the_case, folder_.path(), RecordMode::all, {}));
         entered_at_ = room.clock().now();
-        recorder.room_entered({"A room", true, {}, room.calibration(), {}, entered_at_});
+        recorder.room_entered({"A room", RoomKind::simulated, {}, room.calibration(), {}, entered_at_});
         const CaseDrawing drawing(the_case);
         SessionSettings settings;
         settings.observer = &recorder;
@@ -89,6 +89,7 @@ protected:
     /// The page of an operation shows how far off the light is in both cameras' pictures, or says why it does not.
     void expect_on_the_report(const StereoFrame& pictures) const {
         OperationFacts facts;
+        facts.head = time_line_of(file_).head;
         facts.moment = OperationMoment{lit_at_s_, "aligned", pictures.left, pictures.right, {}};
         compare_moment(facts, file_);  // no case stands where it was recorded
         EXPECT_TRUE(facts.moment->compared[0].empty());

@@ -189,6 +189,36 @@ TEST_F(Operation, WhoSaidThatTheLightIsRightIsTold) {
     EXPECT_EQ(f.verified_by_program, 1);
 }
 
+TEST_F(Operation, WhoPressedIsNamedWhereHeWasNamed) {
+    RecordingHead head = head_of(chunks_[0].payload, "by hand");
+    EXPECT_EQ(operator_text(head), "Ada (account of the computer)") << "an account presses nothing";
+    head.operator_name = "Dr. Anna Meier", head.operator_named = true;
+    chunks_[0].payload = text_of(head);
+    match("ask");
+    event({{"what", "pressed"}, {"action", "confirm"}, {"utc", "x"}});
+    event({{"what", "asked"}, {"call", "confirm"}, {"utc", "x"}});
+    const OperationFacts f = facts();
+    EXPECT_EQ(f.said.at(0).what, "By a press (Dr. Anna Meier) the match was said to fit.");
+    EXPECT_EQ(operator_text(f.head), "Dr. Anna Meier");
+    EXPECT_EQ(json::parse(operation_json(f))["operator"], "Dr. Anna Meier");
+    EXPECT_EQ(operator_text(without_names(head)), "");
+}
+
+TEST_F(Operation, SaysByWhichLimitsTheLightWasJudgedAndHowLateItWasHeldToBe) {
+    RecordingHead head = head_of(chunks_[0].payload, "by hand");
+    EXPECT_EQ(settings_in_words(head), "") << "a recording of before does not tell";
+    head.settings =
+        R"({"light_delay_ms": 31.5, "light_delay_from": "projector file", "gate": {"warn_mm": 1, "stop_mm": 2}})";
+    chunks_[0].payload = text_of(head);
+    const OperationFacts f = facts();
+    EXPECT_EQ(settings_in_words(f.head),
+              "gate: amber above 1 mm, dark above 2 mm; projector latency 31.5 ms (projector file)");
+    EXPECT_EQ(json::parse(operation_json(f))["settings"]["light_delay_ms"], 31.5);
+    EXPECT_NE(page_of(f).find("projector latency 31.5 ms"), std::string::npos);
+    head.settings = R"({"light_delay_ms": "late"})";
+    EXPECT_EQ(settings_in_words(head), "") << "another program's";
+}
+
 TEST_F(Operation, ItsLastWordCountsWhatTheDiskDidNotTake) {
     add(chunk_types::kLost, R"({"chunks": 2, "bytes": 10})");
     EXPECT_EQ(facts(true, R"({"dropped_chunks": 5, "dropped_bytes": 20})").lost_chunks, 5u);

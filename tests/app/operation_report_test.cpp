@@ -95,6 +95,21 @@ TEST_F(OperationReport, AccuracyIsToldInTheTermsOfAstmF2554WhereItWasMeasured) {
     EXPECT_NE(html.find("ASTM F2554"), std::string::npos);
 }
 
+// Only so can it be laid beside what the anaesthesia or the navigation recorded.
+TEST_F(OperationReport, SaysWhatTheClockOnTheWallWasAtTheBeginningOfItsOwn) {
+    const char* was = std::getenv("TZ");
+    const std::string zone = was ? was : "";
+    ASSERT_EQ(setenv("TZ", "UTC-5:30", 1), 0);  // India: 5.5 h ahead
+    tzset();
+    const OperationFacts f = facts();
+    const std::string html = page_of(f);
+    was ? setenv("TZ", zone.c_str(), 1) : unsetenv("TZ");
+    tzset();
+    EXPECT_EQ(json::parse(operation_json(f))["room_entered"], "2026-03-14T09:30:07Z");
+    EXPECT_NE(html.find("<td>Room clock 0:00:00</td><td>2026-03-14 09:30:07 UTC; here 2026-03-14 15:00:07 (UTC+05:30)"),
+              std::string::npos);
+}
+
 TEST_F(OperationReport, PageAndFiguresStandBesideTheRecordingForItsOwnerOnly) {
     match();
     lit(0.1, 0.2, "aligned");

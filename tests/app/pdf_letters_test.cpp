@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/report/pdf_page.h"
+#include "app/report/document.h"
 
 namespace planlight {
 namespace {
@@ -51,16 +51,17 @@ TEST(PdfLetters, HebrewAndArabicAreReadFromTheRight) {
 }
 
 TEST(PdfLetters, ASheetTakesThemAll) {
-    PdfPages pdf("Report of 王小明", "محمد");
-    pdf.heading("आदेश");
-    pdf.paragraph(
-        "王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明");
-    pdf.table({{"名", "اسم"}, {"患者", "محمد, 12 mm"}}, {0.5, 0.5});
-    const std::string bytes = pdf.bytes();
+    Document document{"Report of 王小明"};
+    document.foot = "محمد";
+    document.blocks = {
+        DocumentHeading{"आदेश"},
+        DocumentText{"王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明王小明"},
+        DocumentTable{{{"名"}, {"اسم"}}, {{{"患者"}, {"محمد, 12 mm"}}}}};
+    const std::string bytes = pdf_of(document);
     EXPECT_TRUE(bytes.starts_with("%PDF"));
-    PdfPages latin("Report of", "foot");
-    latin.heading("h");
-    EXPECT_GT(bytes.size(), latin.bytes().size() + 2000);  // the outlines are in it
+    Document latin{"Report of"};
+    latin.blocks = {DocumentHeading{"h"}};
+    EXPECT_GT(bytes.size(), pdf_of(latin).size() + 2000);  // the outlines are in it
 }
 
 }  // namespace

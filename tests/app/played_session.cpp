@@ -122,7 +122,7 @@ public:
     Projector& projector() override { return projector_; }
     StereoCamera& cameras() override { return cameras_; }
     const Clock& clock() const override { return rig_.clock(); }
-    bool simulated() const override { return true; }
+    RoomKind kind() const override { return RoomKind::simulated; }
     Instant look_interval() const override { return 2s; }
     void computing() override { rig_.wait(10ms); }
     void let_patient_move(bool moves) override {

@@ -94,6 +94,7 @@ protected:
         EXPECT_EQ(model.item_of_moment, 1U);
         EXPECT_FALSE(asks_to_read_the_card(model)) << "it has been read";
         EXPECT_EQ(session.projecting(), model.status.kind != StatusKind::refused);
+        if (session.projecting()) looked_at_again(session);
         if (model.status.kind == StatusKind::refused) {
             // And so it stays: another press looks again, and lights no more than was asked for meanwhile.
             EXPECT_EQ(session.post_item(OperatorAction::show_item, std::nullopt), "");
@@ -111,6 +112,22 @@ protected:
         EXPECT_FALSE(session.model().do_register.enabled);
         EXPECT_NE(session.post(OperatorAction::do_register), "");
         return model;
+    }
+    /// Of the light of a projector that was away a person has seen nothing: it is green once it was looked at anew.
+    static void looked_at_again(LiveSession& session) {
+        wait_for(session, "the question", [](const OperatorModel& m) {
+            EXPECT_NE(m.status.kind, StatusKind::aligned) << m.status.headline;
+            return m.confirm;
+        });
+        std::string said;
+        wait_for(session, "green light again", [&](const OperatorModel& m) {
+            if (m.confirm && m.confirm_words != said) {
+                said = m.confirm_words;
+                session.post(OperatorAction::confirm);
+            }
+            return m.status.kind == StatusKind::aligned;
+        });
+        EXPECT_EQ(said, "Light 2 is right");
     }
     static inline const std::vector<std::string> kCard{"E. M.", "RIGHT"};
 };

@@ -29,7 +29,7 @@ protected:
         head.began_utc = "2026-03-14T09:30:00Z", head.operator_name = "Ada";
         add(chunk_types::kHead, text_of(head));
         add(chunk_types::kRoom,
-            R"({"name": "Theatre 2", "simulated": false, "rig_hash": "r", "rig": {"made_on": "2026-03-01"}})");
+            R"({"name": "Theatre 2", "simulated": false, "rig_hash": "r", "rig": {"made_on": "2026-03-01"}, "utc": "2026-03-14T09:30:07Z"})");
     }
     void add(ChunkType type, const std::string& payload) {
         chunks_.push_back({type, kOrigin + kStep * step_, payload});

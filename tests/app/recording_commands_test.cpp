@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "app/live/shown_review.h"
 #include "app/recording/recording_head.h"
 #include "planning_io/recording/packed_pictures.h"
 #include "planning_io/recording/recording_chunk.h"
@@ -103,14 +104,81 @@ TEST(ReviewCommand, OfAMomentOfAnAnonymousRecordingSaysThatNoCaseWouldHelp) {
               std::string::npos);
 }
 
+TEST(ReviewCommand, AClipIsAPictureForEachFrameThatWasKeptInBetweenWithItsTime) {
+    const TemporaryFolder folder;
+    RecordingHead head;
+    head.case_code = "1a2b";
+    {
+        std::ofstream out(folder.path() / "a.plrec", std::ios::binary);
+        out << recording_header() << chunk_bytes({chunk_types::kHead, Instant(0), text_of(head)}, 0)
+            << chunk_bytes({chunk_types::kRoom, Instant(0), "{}"}, 1);
+        for (std::uint64_t i = 1; i <= 4; ++i) {
+            const Instant at = std::chrono::seconds(i);
+            out << chunk_bytes({chunk_types::kFrame, at, pack_frame({GrayImage(64, 48), GrayImage(64, 48), at, {}, i})},
+                               i + 1);
+        }
+        out << chunk_bytes({chunk_types::kDone, std::chrono::seconds(4), "{}"}, 6);
+    }
+    const auto clip = folder.path() / "a-review" / "clip";
+    for (int time = 0; time < 2; ++time) {
+        const CommandRun run = run_planlight("review a.plrec --clip 2 3.5", folder.path());
+        ASSERT_EQ(run.exit_code, 0) << run.err;
+        EXPECT_NE(run.out.find("2 pictures in a-review/clip"), std::string::npos) << run.out;
+        EXPECT_EQ(std::distance(fs::directory_iterator(clip), {}), 3) << "two pictures and their times";
+        EXPECT_EQ(whole(clip / "times.csv"), "file,seconds\n000000.png,2.000000\n000001.png,3.000000\n");
+        EXPECT_EQ(whole(clip / "000001.png").substr(1, 3), "PNG");
+    }
+    expect_refused(run_planlight("review a.plrec --clip 9 10", folder.path()), 3, "kept no frame from 9 to 10 s");
+    expect_refused(run_planlight("review a.plrec --clip 3 2", folder.path()), 2, "ends before it begins");
+}
+
+/// Whoever looks at a recording over a network share has others beside him.
+TEST(ReviewCommand, PageMomentAndClipAreForTheirOwnerAloneWhateverTheUmask) {
+    for (const char* umask : {"umask 0022; ", "umask 0077; ", "umask 0; "}) {
+        const TemporaryFolder folder;
+        fs::permissions(folder.path(), fs::perms(0755));
+        RecordingHead head;
+        head.case_code = "1a2b";
+        const StereoFrame frame{GrayImage(64, 48, 90), GrayImage(64, 48, 90), std::chrono::seconds(1), {}, 1};
+        std::ofstream(folder.path() / "a.plrec", std::ios::binary)
+            << recording_header() << chunk_bytes({chunk_types::kHead, Instant(0), text_of(head)}, 0)
+            << chunk_bytes({chunk_types::kRoom, Instant(0), "{}"}, 1)
+            << chunk_bytes({chunk_types::kFrame, frame.at, pack_frame(frame)}, 2)
+            << chunk_bytes({chunk_types::kDone, frame.at, "{}"}, 3);
+        const CommandRun run =
+            run_planlight("review a.plrec --at 1 --clip 0 2 --out deep/review", folder.path(), umask);
+        ASSERT_EQ(run.exit_code, 0) << run.err;
+        int files = 0;
+        for (const auto& entry : fs::recursive_directory_iterator(folder.path() / "deep" / "review")) {
+            files += entry.is_regular_file();
+            EXPECT_EQ(entry.status().permissions(), fs::perms(entry.is_directory() ? 0700 : 0600)) << umask << entry;
+        }
+        EXPECT_EQ(files, 5) << "page, figures, the moment, and a clip of one picture with its time";
+        EXPECT_EQ(fs::status(folder.path() / "deep" / "review").permissions(), fs::perms(0700));
+        EXPECT_EQ(fs::status(folder.path()).permissions(), fs::perms(0755)) << "what was there before stays as it was";
+    }
+}
+
+TEST(ReviewCommand, AnEventOfTheWrongKindIsADamagedFile) {
+    const TemporaryFolder folder;
+    RecordingHead head;
+    head.case_code = "1a2b";
+    std::ofstream(folder.path() / "a.plrec", std::ios::binary)
+        << recording_header() << chunk_bytes({chunk_types::kHead, Instant(0), text_of(head)}, 0)
+        << chunk_bytes({chunk_types::kRoom, Instant(0), R"({"utc": 7})"}, 1)
+        << chunk_bytes({chunk_types::kDone, Instant(1), "{}"}, 2);
+    expect_refused(run_planlight("review a.plrec", folder.path()), 4, "cannot be understood");
+}
+
 TEST(ForgetCommand, NamesAllThatShowsTheFace) {
     const TemporaryFolder folder;
     write_recording(folder.path() / "a.plrec");
     ASSERT_EQ(run_planlight("review a.plrec", folder.path()).exit_code, 0);
     ASSERT_EQ(run_planlight("report a.plrec --pdf a.pdf", folder.path()).exit_code, 0);
+    std::ofstream(snapshot_of(folder.path() / "a.plrec", 95)) << "a picture of the window";
     const CommandRun run = run_planlight("forget a.plrec", folder.path());
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    for (const char* left : {"a-review", "a.pdf", "a.html", "a.json"}) {
+    for (const char* left : {"a-review", "a.pdf", "a.html", "a.json", "a-at-95.000.png"}) {
         EXPECT_NE(run.out.find(std::string("Left: ") + left), std::string::npos) << run.out;
         EXPECT_TRUE(fs::exists(folder.path() / left)) << "named, not removed";
     }

@@ -10,6 +10,7 @@
 #include "app/recording/recording_head.h"
 #include "app/report/recorded_moments.h"
 #include "app/report/recording_review.h"
+#include "planning_io/files/safe_write.h"
 #include "planning_io/recording/packed_pictures.h"
 #include "planning_io/recording/recording_chunk.h"
 #include "planning_io/types/error.h"
@@ -40,8 +41,9 @@ protected:
         out_ << recording_header();
         RecordingHead head;
         head.case_code = head.case_title = "1234";
+        head.settings = R"({"light_delay_ms": 25})";
         put(chunk_types::kHead, -kBegan, text_of(head));
-        put(chunk_types::kRoom, {}, "{}");
+        put(chunk_types::kRoom, {}, R"({"utc": "2026-03-14T09:30:00Z"})");
         event(milliseconds(1), {{"what", "matched"}, {"verdict", "yes"}, {"predicted_mm", {0.3, 0.4}}});
         for (int i = 0; i < 300; ++i) {
             const Instant at = milliseconds(100 * i + 50);
@@ -282,6 +284,55 @@ TEST_F(RecordingReview, OneBitThatWasChangedInAPictureIsFound) {
     look_at_pictures(line, file_);
     EXPECT_TRUE(line.damaged_pictures);
     EXPECT_NE(line.ended.find("damaged among its pictures"), std::string::npos) << line.ended;
+}
+
+// An hour of pictures takes minutes to be read: who wants to see what happened does not wait for that.
+TEST_F(RecordingReview, PageAndMomentAreThereBeforeThePicturesAreLookedAtAndTellOfDamageAfterwards) {
+    make();
+    finish(true);
+    RecordingTimeLine line = time_line_of(file_);
+    const fs::path out = folder_.path() / "out";
+    fs::create_directory(out);
+    const auto page = [&] { return read_whole(out / "index.html"); };
+    const auto figures = [&] { return nlohmann::json::parse(read_whole(out / "review.json")); };
+    const auto show = [&](ReviewedMoment& moment) {
+        EXPECT_NE(page().find("What happened"), std::string::npos);
+        EXPECT_EQ(figures()["ended"], "");
+        moment.pictures = {{"frame.png", "both cameras"}};
+    };
+    const auto find_damage = [&](RecordingTimeLine& looked_at) {
+        EXPECT_NE(page().find("frame.png"), std::string::npos) << "its picture does not wait either";
+        looked_at.damaged_pictures = true;
+        looked_at.ended = "damaged among its pictures";
+    };
+    write_review(line, out, show, find_damage);
+    EXPECT_NE(page().find("damaged among its pictures"), std::string::npos);
+    EXPECT_NE(page().find("frame.png"), std::string::npos);
+    EXPECT_EQ(figures()["ended"], "damaged among its pictures");
+    for (const char* file : {"index.html", "review.json"})
+        EXPECT_EQ(fs::status(out / file).permissions(), fs::perms(0600)) << file;
+    const auto unreadable = [&](ReviewedMoment&) { throw DamagedFileError(file_, "a piece of it does not read", "x"); };
+    bool looked_at = false;
+    EXPECT_THROW(write_review(line, out, unreadable, [&](RecordingTimeLine&) { looked_at = true; }), DamagedFileError);
+    EXPECT_TRUE(looked_at) << "that one moment does not read is not all that is to be said";
+}
+
+TEST_F(RecordingReview, SaysWhatTheClockOnTheWallWasAtItsBeginningAndWhatTheSessionWasTold) {
+    make();
+    finish(true);
+    const RecordingTimeLine line = time_line_of(file_);
+    const auto figures = nlohmann::json::parse(review_json(line));
+    EXPECT_EQ(figures["room_entered"], "2026-03-14T09:30:00Z");
+    EXPECT_EQ(figures["settings"]["light_delay_ms"], 25);
+    EXPECT_NE(review_page(line, {}).find("2026-03-14 09:30:00 UTC"), std::string::npos);
+}
+
+// Its bytes are as they were written: a program wrote it that names things otherwise.
+TEST_F(RecordingReview, AnEventOfTheWrongKindIsDamageAndNoFaultOfOurs) {
+    make();
+    event(milliseconds(31000), {{"what", "refused"}, {"call", 7}, {"why", {"a", "b"}}});
+    finish(true);
+    EXPECT_THROW(time_line_of(file_), DamagedFileError);
 }
 
 TEST_F(RecordingReview, ARecordingThatWasCutIsShownUpToThere) {

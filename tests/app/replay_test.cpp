@@ -168,6 +168,17 @@ TEST_F(SpoiltRecording, IsRefusedForAnotherCaseAndWithoutItsFrames) {
     EXPECT_THROW(replay_session(file, test::example_case().prepared), InputError);
 }
 
+TEST_F(SpoiltRecording, IsRefusedWhereItsRoomIsOfAnotherKindOfWords) {
+    auto chunks = chunks_;
+    const auto entered =
+        std::ranges::find_if(chunks, [](const RecordingChunk& c) { return c.type == chunk_types::kRoom; });
+    ASSERT_NE(entered, chunks.end());
+    const std::string word = "\"simulated\":true";
+    ASSERT_NE(entered->payload.find(word), std::string::npos);
+    entered->payload.replace(entered->payload.find(word), word.size(), "\"simulated\":\"yes\"");
+    EXPECT_THROW(replay(chunks), DamagedFileError);
+}
+
 TEST_F(SpoiltRecording, IsRefusedWhereItDoesNotSayItsMarkersOrTheWayItWasRecorded) {
     for (const auto& [name, other] :
          {std::pair{"\"disc_mm\"", "\"disk_mm\""}, {"\"sticker_mm\":", "\"sticker_mm\":\"\",\"x\":"}}) {

@@ -19,7 +19,7 @@ public:
     Projector& projector() override { return room_->projector(); }
     StereoCamera& cameras() override { return cameras_; }
     const Clock& clock() const override { return room_->clock(); }
-    bool simulated() const override { return room_->simulated(); }
+    RoomKind kind() const override { return room_->kind(); }
     void computing() override { room_->computing(); }
     void let_patient_move(bool moves) override { room_->let_patient_move(moves); }
     void begin_fault() override { room_->begin_fault(); }

@@ -9,10 +9,10 @@
 #include <thread>
 #include <vector>
 
+#include "planning_io/files/disk_refusal.h"
 #include "planning_io/recording/packed_pictures.h"
 #include "planning_io/recording/recording_file.h"
 #include "planning_io/recording/recording_reader.h"
-#include "planning_io/types/error.h"
 #include "tests/support/test_data.h"
 
 namespace planlight {
@@ -88,6 +88,41 @@ TEST(RecordedEvents, WhatHappensBeforeTheFirstFrameKeepsTheFirstFrames) {
     RecordingReader reader(file);
     while (const auto chunk = reader.next()) frames += chunk->type == chunk_types::kFrame;
     EXPECT_EQ(frames, 13) << "twelve after the press, and the next of the usual ones";
+}
+
+/// A disk that is full, or whose power is gone.
+class FullDisk final : public RecordingSink {
+public:
+    explicit FullDisk(bool takes) : takes_(takes) {}
+    void append(std::string_view) override {
+        if (!takes_) refuse("cannot be written: No space left on device");
+    }
+    void sync() override { refuse("cannot be synced to the disk: No space left on device"); }
+
+private:
+    [[noreturn]] static void refuse(const std::string& how) {
+        throw DiskRefusal("/srv/cases/MEIER/a.plrec", how, "Make room.",
+                          std::make_error_code(std::errc::no_space_on_device));
+    }
+    bool takes_;
+};
+
+/// Whoever stands at the table may read the banner: it says what is wrong, and no folder that may be called as somebody
+/// is. Who looks after the disk is told the file, when the recording ends.
+TEST(RecorderTrouble, NamesNoFileInTheBannerAndDoesAtTheEnd) {
+    for (const bool takes : {false, true}) {
+        RecordingWriterSettings quick;
+        quick.retry_after = quick.sync_every = milliseconds(1);
+        SessionRecorder recorder(std::make_unique<FullDisk>(takes), {}, quick);
+        while (recorder.trouble().empty()) std::this_thread::sleep_for(milliseconds(1));
+        const std::string said = recorder.trouble();
+        EXPECT_NE(said.find(takes ? "The disk did not confirm the recording: No space left on device;"
+                                  : "The recording stands still: No space left on device."),
+                  std::string::npos)
+            << said;
+        EXPECT_EQ(said.find('/'), std::string::npos) << said;
+        EXPECT_NE(recorder.finish().find("/srv/cases/MEIER/a.plrec"), std::string::npos);
+    }
 }
 
 /// What is said of an hour's size holds of the file, whatever fills it: words of the gate that are long, and frames

@@ -13,6 +13,9 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUtilities.h>
 
+#include <array>
+#include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -67,6 +70,7 @@ TEST_F(SlicerFolder, EveryReferenceIsThereAndEveryFile) {
     const auto root = scene();
     ASSERT_STREQ(root->GetName(), "MRML");
     int markups = 0, models = 0;
+    bool plan_named = false;  // all of it, not what was lit at some moment
     for (int i = 0; i < root->GetNumberOfNestedElements(); ++i) {
         vtkXMLDataElement* node = root->GetNestedElement(i);
         for (const char* reference : {"displayNodeRef", "storageNodeRef", "transformNodeRef"})
@@ -81,10 +85,12 @@ TEST_F(SlicerFolder, EveryReferenceIsThereAndEveryFile) {
         }
         const std::string name = node->GetName();
         models += name == "Model";
+        plan_named |= name == "Model" && std::string(node->GetAttribute("name")) == "plan on the skin";
         markups += name == "MarkupsFiducial" || name == "MarkupsLine" || name == "MarkupsClosedCurve" ||
                    name == "MarkupsPlane";
     }
     EXPECT_EQ(models, 3) << "skin, scan, light";
+    EXPECT_TRUE(plan_named);
     EXPECT_EQ(markups, 4) << "one of every kind";
 }
 
@@ -120,6 +126,28 @@ TEST_F(SlicerFolder, TheScanLiesOnTheSkinInSlicersOwnFrame) {
             transform = root->GetNestedElement(i)->GetAttribute("transformNodeRef");
     ASSERT_NE(transform, nullptr);
     EXPECT_STREQ(transform, "vtkMRMLLinearTransformNode1");
+}
+
+/// Plastimatch reads transforms by ITK, as 3D Slicer does: it moves places of the CT to where the rig has them, in LPS.
+TEST_F(SlicerFolder, AnotherProgramReadsTheTransformAsItIsMeant) {
+    if (std::system("command -v plastimatch >/dev/null 2>&1") != 0) GTEST_SKIP() << "plastimatch is not installed";
+    const fs::path moved = world().folder.path() / "moved.mha";
+    const std::string command = "plastimatch xf-convert --input '" + (folder() / "ct_from_rig.tfm").string() +
+                                "' --output '" + moved.string() +
+                                "' --output-type vf --origin '-80 -100 5' --spacing '160 150 90' --dim '2 2 2'";
+    ASSERT_EQ(std::system((command + " >/dev/null 2>&1").c_str()), 0) << command;
+    std::ifstream in(moved, std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(in), {}), last = "ElementDataFile = LOCAL\n";
+    const std::size_t at = bytes.find(last);
+    ASSERT_NE(at, std::string::npos);
+    std::array<float, 24> by{};  // of each place the way to where it goes, x fastest
+    ASSERT_EQ(bytes.size(), at + last.size() + sizeof by);
+    std::memcpy(by.data(), bytes.data() + at + last.size(), sizeof by);
+    for (std::size_t i = 0; i < 8; ++i) {
+        const Vector3d in_ct(i % 2 == 0 ? -80 : 80, i / 2 % 2 == 0 ? -100 : 50, i / 4 == 0 ? 5 : 95);
+        const Vector3d there = in_ct + Vector3d(by[3 * i], by[3 * i + 1], by[3 * i + 2]);
+        EXPECT_LT((there - world().operation.match.patient_from_ct * in_ct).norm(), 1e-3) << "single precision";
+    }
 }
 
 TEST_F(SlicerFolder, SkinLightAndPlanAreInMillimetresOfTheCt) {

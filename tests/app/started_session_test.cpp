@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <thread>
 
+#include "app/recording/replay_session.h"
 #include "app/recording/resume_offer.h"
 #include "planning_io/case/case_folder.h"
 #include "tests/app/igtl/igtl_receiver.h"
@@ -69,7 +71,9 @@ bool comes_to_listen(int port) {
 
 TEST_F(StartedSession, IsHeardByAnotherSystemAndEndsWithItsReport) {
     const int port = port_for_igtl();
-    const auto program = start({"--igtl", std::to_string(port), "--end-after-s", "6"});
+    const fs::path shots = folder_.path() / "shots";
+    const auto program = start({"--igtl", std::to_string(port), "--end-after-s", "6", "--operator-name",
+                                "Dr. Anna Meier", "--screenshots", shots.string()});
     ASSERT_TRUE(comes_to_listen(port)) << program->said();
     IgtlReceiver receiver(port);
     EXPECT_EQ(program->wait(kLongest), 0) << program->said();
@@ -92,6 +96,56 @@ TEST_F(StartedSession, IsHeardByAnotherSystemAndEndsWithItsReport) {
         EXPECT_EQ(fs::status(beside).permissions(), fs::perms::owner_read | fs::perms::owner_write);
     }
     EXPECT_EQ(whole(fs::path(file).replace_extension(".pdf")).substr(0, 5), "%PDF-");
+    const RecordingHead head = head_of_recording(file);
+    EXPECT_EQ(head.operator_name, "Dr. Anna Meier");
+    EXPECT_TRUE(head.operator_named);
+    EXPECT_NE(head.settings.find("\"light_delay_ms\":25.0"), std::string::npos) << head.settings;
+    int lights = 0;
+    for (const auto& picture : fs::directory_iterator(shots)) {
+        lights += picture.path().filename().string().starts_with("light-");
+        EXPECT_EQ(picture.status().permissions(), fs::perms::owner_read | fs::perms::owner_write)
+            << picture.path() << ": a face, or the card with a name";
+    }
+    EXPECT_GT(lights, 0);
+}
+
+/// Bytes in small letters, and again as texts of two bytes a letter have them.
+bool holds(const fs::path& file, const std::string& small) {
+    std::string bytes = whole(file), wide;
+    std::transform(bytes.begin(), bytes.end(), bytes.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const char c : small) wide += c, wide += '\0';
+    return bytes.find(small) != std::string::npos || bytes.find(wide) != std::string::npos;
+}
+
+/// Patient, plan, operator and folders are called so; whoever reads the recording, or the report beside it, meets
+/// nobody.
+TEST_F(StartedSession, ThatIsAnonymousHoldsNoNameOfAnybody) {
+    const fs::path home = folder_.path() / "KRANICHFELD^XAVERIA";
+    fs::create_directory(home);
+    const CommandRun made = run_planlight(
+        "prepare '" + example_patient()->string() +
+            "' --plan '" PLANLIGHT_EXAMPLE_FOLDER
+            "/frontal_defect.mrk.json' --out case --patient 'KRANICHFELD, Xaveria' "
+            "--title \"Kranichfeld's forehead\" --plan-name 'Kranichfeld by Xaveria' --plan-version 'Xaveria 2'",
+        home);
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const fs::path records = home / "Xaveria's recordings";
+    StartedProgram program(*display_,
+                           {"session", (home / "case").string(), "--volume", example_patient()->string(), "--autoplay",
+                            "--anonymous", "--operator-name", "Prof. Xaveria Kranichfeld", "--recordings",
+                            records.string(), "--screenshots", (home / "shots").string(), "--end-after-s", "3"},
+                           folder_.path());
+    EXPECT_EQ(program.wait(kLongest), 0) << program.said();
+    int files = 0;
+    for (const auto& entry : fs::directory_iterator(records)) {
+        ++files;
+        EXPECT_EQ(entry.status().permissions(), fs::perms::owner_read | fs::perms::owner_write);
+        for (const char* name : {"kranichfeld", "xaveria"}) EXPECT_FALSE(holds(entry.path(), name)) << entry << name;
+    }
+    EXPECT_EQ(files, 4) << "the recording, and its report as page, figures and PDF";
+    EXPECT_EQ(fs::status(records).permissions(), fs::perms(0700));
+    EXPECT_TRUE(holds(home / "case" / "case.json", "kranichfeld")) << "else there was nothing to be left out";
 }
 
 TEST_F(StartedSession, ThatIsKilledLeavesARecordingToGoOnWithAndNoReport) {

@@ -231,5 +231,23 @@ TEST(LightCause, EveryCauseHasWordsAndARemedy) {
     }
 }
 
+TEST(LightCause, LightFoundFarAsideIsNotCalledDarkOrCovered) {
+    for (const double share : {0.0, 0.3}) {
+        Scene scene;
+        scene.seen_share = share;
+        auto facts = scene.run(2s);
+        for (LightFacts& f : facts)
+            if (f.expected > 0) f.far_mm = 5;
+        const auto causes = causes_of(facts);
+        ASSERT_FALSE(causes.empty());
+        EXPECT_EQ(causes.front().fault, LightFault::light_off);
+        EXPECT_DOUBLE_EQ(causes.front().size, 5);
+        for (const LightCause& cause : causes) {
+            EXPECT_NE(cause.fault, LightFault::no_picture);
+            EXPECT_NE(cause.fault, LightFault::partly_covered);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace planlight

@@ -41,6 +41,20 @@ LightGate::Ruling after(LightGate& gate, Instant& now, int updates, const std::o
     return ruling;
 }
 
+/// Nothing is seen near its place, and all of it farther off: that is wrong light, not light that is covered.
+TEST(LightGate, LightThatIsFoundFarAsideGoesOut) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    LightCheck far = seen_at(0, 0, 40);
+    far.far_mm = 6.2;
+    EXPECT_FALSE(after(gate, now, 1, far).stop) << "once may be chance";
+    const auto ruling = after(gate, now, 1, far);
+    EXPECT_TRUE(ruling.stop);
+    EXPECT_EQ(ruling.headline, "Dark: the light lay 6.2 mm beside the plan.");
+    EXPECT_TRUE(after(gate, now, 10, seen_at(0.1)).stop) << "until it is asked for again";
+}
+
 /// All that the cameras can see they see, and it is too little: that is not light that is not seen.
 TEST(LightGate, OfTooFewStretchesItSaysThatTheyAreTooFew) {
     LightGate gate;
@@ -128,6 +142,21 @@ TEST(LightGate, GoesDarkAtTheSecondMeasurementBeyondTheStopAndStaysSo) {
     EXPECT_TRUE(after(gate, now, 50, seen_at(0.1), false).stop) << "it does not come back by itself";
     gate.restart();
     EXPECT_FALSE(after(gate, now, 1, seen_at(0.1)).stop);
+}
+
+TEST(LightGate, AfterAStopAPersonLooksAgain) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    gate.restart();
+    EXPECT_EQ(after(gate, now, 5, seen_at(0.1)).trust, LightTrust::aligned) << "DARK, and Track, are no stop";
+    EXPECT_TRUE(after(gate, now, 2, seen_at(2.5)).stop);
+    gate.restart();
+    const auto again = after(gate, now, 5, seen_at(0.1));
+    EXPECT_EQ(again.trust, LightTrust::look) << "what was verified then lay wrong afterwards";
+    EXPECT_TRUE(again.ask_to_verify);
+    gate.verify(now);
+    EXPECT_EQ(after(gate, now, 5, seen_at(0.1)).trust, LightTrust::aligned);
 }
 
 TEST(LightGate, ANewMatchAndALongPauseAskAgain) {

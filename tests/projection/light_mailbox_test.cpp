@@ -61,6 +61,22 @@ TEST(LightMailbox, NeverMixesTwoPictures) {
     }
 }
 
+// A monitor of 5120 x 2880, say: its picture would be written over the other slots, and past the memory.
+TEST(LightMailbox, RefusesAMonitorThatItsPicturesHaveNoRoomFor) {
+    LightMailbox program;
+    LightMailbox projector(dup(program.descriptor()));
+    EXPECT_THROW(projector.say_ready(3840, 2401), DeviceError);
+    EXPECT_EQ(program.state(), LightMailbox::State::starting);
+    EXPECT_THROW(program.order(RgbImage(5120, 2880), 5s), DeviceError);
+    LightMailbox::Order order;
+    EXPECT_FALSE(projector.take(order));
+    projector.say_ready(3840, 2400);
+    EXPECT_EQ(program.state(), LightMailbox::State::ready);
+    program.order(RgbImage(3840, 2400, {1, 2, 3}), 5s);
+    ASSERT_TRUE(projector.take(order));
+    EXPECT_EQ(order.picture.pixels.back(), (Rgb{1, 2, 3}));
+}
+
 TEST(LightMailbox, TellsWhatWentWrongThere) {
     LightMailbox program;
     LightMailbox projector(dup(program.descriptor()));

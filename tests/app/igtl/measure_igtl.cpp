@@ -176,7 +176,7 @@ void record(const std::filesystem::path& file, unsigned seed) {
     simulation::SimulatedRig room(test::example_case().volume, points_of(the_case.plan), papers);
     SessionRecorder recorder(std::make_unique<RecordingFile>(file),
                              recording_head(the_case, file.parent_path(), RecordMode::all, {}));
-    recorder.room_entered({"A room", true, {}, room.calibration(), {}, room.clock().now()});
+    recorder.room_entered({"A room", RoomKind::simulated, {}, room.calibration(), {}, room.clock().now()});
     const CaseDrawing drawing(the_case);
     SessionSettings settings;
     settings.observer = &recorder;

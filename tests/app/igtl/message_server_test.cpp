@@ -2,6 +2,7 @@
 #include "app/igtl/message_server.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -55,6 +56,22 @@ TEST(MessageServer, GivesEachNewClientTheFirstMessagesAndThenTheNewest) {
         TcpClient client(server.port());
         EXPECT_EQ(read(server, client, 22), "skin,plan,gate,pose 2,");
     }
+}
+
+// A client whom the system has no room for stays in its queue: asking for him again at once would be all that we do.
+TEST(MessageServer, AClientThatCannotBeTakenIsNotAskedForAgainAtOnce) {
+    MessageServerSettings settings = quick();
+    settings.most_new_per_s = 0;  // one, and then none
+    MessageServer server(settings);
+    TcpClient client(server.port());
+    rlimit was{};
+    ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &was), 0);
+    const rlimit none{0, was.rlim_max};
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+    for (int i = 0; i < 3; ++i) server.turn(milliseconds(1));
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &was), 0);
+    for (int i = 0; i < 3; ++i) server.turn(milliseconds(1));
+    EXPECT_EQ(server.counts().taken, 0u) << "the failed one was its turn";
 }
 
 TEST(MessageServer, SaysNothingOfWhatIsNotKnownAnyMore) {

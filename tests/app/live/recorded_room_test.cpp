@@ -113,7 +113,7 @@ TEST_F(RecordedRoomTest, IsNoRealRoomAndMustFitItsRig) {
     rig.projector.width = 64, rig.projector.height = 48;
     rig.serials.left_camera = "1", rig.serials.right_camera = "2";
     RealRoom room(room_, rig, nullptr);
-    EXPECT_TRUE(room.simulated()) << "nothing there is real, and the window says so";
+    EXPECT_EQ(room.kind(), RoomKind::recorded) << "nothing there is real, and the window says so";
     EXPECT_EQ(room.projector().width(), 64);
     rig.left_camera.width = 33;
     EXPECT_THROW(RealRoom(room_, rig, nullptr), CheckFailedError);

@@ -167,8 +167,15 @@ TEST(SessionStates, FiguresStayOnlyWhereLightIsJudged) {
     for (const SessionState state : kSessionStates) {
         const bool judged = view_of(state).lights && view_of(state).has_match;
         EXPECT_EQ(entered(state).figures == Figures{}, !judged) << name(state);
-        EXPECT_EQ(entered(state).light_on, judged) << name(state);
     }
+}
+
+// Also a scan's stripes fall on the patient: by a stray Alt-F4 they must not go, and the scan with them.
+TEST(SessionStates, ClosingTheWindowIsAskedAboutWhereverThereMayBeLight) {
+    for (const SessionState state : kSessionStates)
+        EXPECT_EQ(entered(state).light_on, view_of(state).lights) << name(state);
+    for (const SessionState state : {SessionState::scanning, SessionState::checking_skin, SessionState::looking_again})
+        EXPECT_TRUE(entered(state).light_on) << name(state);
 }
 
 TEST(SessionStates, AMatchIsShownOnlyWhereThereIsOne) {

@@ -107,13 +107,16 @@ int main(int, char** argv) {
     const auto start = steady_clock::now();
     const char* const views[] = {"view after", "view before", "view error"};
     FitView last_view = window.fit_view();
-    bool opened = false, asked = false, page = false, view_buttons = false;
+    bool opened = false, landmarks_open = false, asked = false, page = false, view_buttons = false;
     std::string answer;
     std::size_t clicked = 0;
     double last_azimuth = window.view().azimuth;
     while (steady_clock::now() - start < std::chrono::seconds(120)) {
+        const std::size_t drawn_before = window.frames_drawn();
         const OperatorAction action = window.frame(model);
-        if (action == OperatorAction::light_item) {
+        if (action == OperatorAction::dark && window.frames_drawn() != drawn_before) {
+            fmt::print("dark after a whole frame was drawn\n");
+        } else if (action == OperatorAction::light_item) {
             model.item_of_moment = window.item_wanted();
             fmt::print("item {}\n", model.item_of_moment ? static_cast<int>(*model.item_of_moment) + 1 : 0);
         } else if (action == OperatorAction::hide_item || action == OperatorAction::show_item) {
@@ -154,6 +157,10 @@ int main(int, char** argv) {
                 test::write_picture(folder + "/question.ppm", window.screenshot());
             }
             fmt::print("question {}\n", asked ? "open" : "closed");
+        }
+        if (const bool now = window.place_of("undo")[2] > 0; now != landmarks_open) {
+            landmarks_open = now;
+            fmt::print("landmarks {}\n", now ? "open" : "closed");
         }
         if (!opened && window.place_of("undo")[2] > 0) {
             opened = true;

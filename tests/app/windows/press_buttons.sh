@@ -56,7 +56,7 @@ xdotool mousemove 600 500; sleep 0.4; xdotool mousedown 1; sleep 0.4; xdotool mo
 wait_for "turned +" "dragging the head to the right shows more of the patient's right"
 silent "and nothing else happens"
 
-click $(place landmarks)
+click $(place landmarks); wait_for "landmarks open" "the landmarks"
 for i in $(seq 50); do [ -e "$folder/landmarks" ] && break; sleep 0.2; done
 large_enough "$folder/landmarks"
 read -r skin_x skin_y <<<"$(place skin-view)"; read -r scan_x scan_y <<<"$(place scan-view)"
@@ -68,11 +68,21 @@ for at in "-40 -60" "45 -50" "5 30"; do
   click $((scan_x + $1)) $((scan_y + $2)); wait_for "landmarks $n on the head" "landmark $n, where it was clicked"
 done
 click $(place undo); wait_for "landmarks 2 on the head" "a landmark is taken back"
+xdotool key m; wait_for "answer At least 3 landmarks are needed." "the key of landmarks says why they are not used"
 xdotool mousemove "$scan_x" "$scan_y"; sleep 0.4; xdotool mousedown 1; sleep 0.4; xdotool mousemove $((scan_x + 60)) "$scan_y"; sleep 0.4; xdotool mouseup 1
 silent "dragging the scan is no click"
 click "$scan_x" $((scan_y + 30)); wait_for "landmarks 3 on the head" "a landmark on the turned scan"
 xdotool key space; wait_for dark "DARK by the key while landmarks are clicked"
-click $(place use); wait_for "use landmarks" "using three landmarks"
+xdotool key u; wait_for "landmarks 2 on the head" "a landmark is taken back by its key"
+for turn in 1 2 3 4; do xdotool key q; silent "the scan is turned by its key"; done
+click "$scan_x" $((scan_y + 30)); wait_for "landmarks 3 on the head" "and clicked again"
+xdotool key l; wait_for "landmarks closed" "landmarks are closed by their key"
+xdotool key u; wait_for "answer That key is for landmarks, and they are not open." "and then the keys in them say why not"
+xdotool key l; wait_for "landmarks open" "and opened by it"
+xdotool key m; wait_for "use landmarks" "using three landmarks, by their key"
+wait_for "landmarks closed" "which closes them"
+click $(place landmarks); wait_for "landmarks open" "opened once more"
+click $(place use); wait_for "use landmarks" "using them"
 click $(place confirm); wait_for confirm "the 3-D view is back"
 
 touch "$folder/close"; wait_for "question open" "closing the window while light is on asks first"
@@ -80,7 +90,11 @@ for i in $(seq 50); do [ -e "$folder/question" ] && break; sleep 0.2; done
 large_enough "$folder/question"
 xdotool key space; wait_for dark "DARK works while it is asked"
 click $(place dark); wait_for dark "and by the mouse"
-xdotool key Return; silent "Enter answers nothing"
+xdotool key s; silent "another key answers nothing"
+xdotool key Next; wait_for "question closed" "to stay, by the pedal that leads on"
+touch "$folder/close"; wait_for "question open" "asked once more"
+xdotool key Return; wait_for "question closed" "to stay, by Enter"
+touch "$folder/close"; wait_for "question open" "and again"
 click $(place stay); wait_for "question closed" "to stay"
 touch "$folder/close"; wait_for "question open" "asked again"
 xdotool key n; wait_for "question closed" "to stay, by its key"

@@ -70,8 +70,8 @@ ReviewModel fake_review() {
 }
 
 const char* name_of(ReviewWish::Kind kind) {
-    const char* const names[] = {"none",  "frame before", "frame after", "event before", "event after",
-                                 "begin", "end",          "to time",     "pick",         "quit"};
+    const char* const names[] = {"none", "frame before", "frame after", "event before", "event after", "begin",
+                                 "end",  "to time",      "pick",        "snapshot",     "quit"};
     return names[static_cast<int>(kind)];
 }
 

@@ -35,6 +35,7 @@ click $(place head 0.5 0.5); wait_for "pick [0-9]*" "a press on the plan on the 
 click $(place head 0.5 0.9); silent "beside the plan nothing is picked on the head"
 xdotool key v; sleep 0.5; click $(place head 0.5 0.5); silent "in the projector's picture nothing is picked"
 xdotool key v; sleep 0.5; click $(place head 0.5 0.5); wait_for "pick [0-9]*" "and on the head again"
+xdotool key s; wait_for snapshot "a picture of the window by its key"
 xdotool key x; silent "another key says nothing"
 xdotool key q; wait_for quit "to close"
 exit $failed

@@ -17,9 +17,10 @@ open_window() {  # open_window SECONDS FILE TITLE: runs the program until FILE s
 }
 since() { tail -n +$((seen + 1)) "$folder/said"; }  # what was said since the last look
 looked() { seen=$(wc -l <"$folder/said"); }
-wait_for() {  # wait_for WORDS WHAT: a line WORDS was said since the last look
+wait_for() {  # wait_for WORDS WHAT: a line WORDS was said since the last look, which is there: what was said after it is still to be looked at
   for i in $(seq 40); do
-    if since | grep -qx -- "$1"; then looked; echo "ok   $2"; return; fi
+    at=$(since | grep -nx -m1 -- "$1" | cut -d: -f1)
+    if [ -n "$at" ]; then seen=$((seen + at)); echo "ok   $2"; return; fi
     sleep 0.1
   done
   echo "FAIL $2: \"$1\" was not said, but: $(since | tr '\n' ',')"; failed=1; looked

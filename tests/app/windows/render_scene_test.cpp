@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "app/live/scene_of_session.h"
 #include "app/windows/distance_colours.h"
 #include "app/windows/orientation.h"
 #include "app/windows/scene_view.h"
@@ -156,6 +157,39 @@ TEST(RenderScene, TheItemOfTheMomentIsBrightAndTheOthersDim) {
     EXPECT_EQ(centre_of(render_scene(scene, view, 640, 480), is_plan_green)[2], 0);
 }
 
+/// White of a sticker's ring, in a picture from straight before it; letters and all else that is white left out.
+double sticker_seen(const SceneModel& scene, const SceneView& view) {
+    SceneModel none = scene;
+    none.markers = nullptr;
+    const auto white = [](const Rgb& c) { return c[0] > 200 && c[1] > 200 && c[2] > 200; };
+    return centre_of(render_scene(scene, view, 640, 480), white)[2] -
+           centre_of(render_scene(none, view, 640, 480), white)[2];
+}
+
+// Nose, brow, the foot of an ear, the nape: where the skin bends, and far from where the head's middle would have it.
+TEST(RenderScene, AMarkerLiesWholeOnTheSkinWhereverItIsPasted) {
+    SceneModel scene;
+    scene.skin = std::make_shared<TriangleMesh>(test::analytic_head_mesh(4));
+    const SkinSurface skin(*scene.skin);
+    for (const Eigen::Vector3d& near :
+         {Eigen::Vector3d(12, -104, -30), Eigen::Vector3d(-30, -90, 10), Eigen::Vector3d(80, -10, -10),
+          Eigen::Vector3d(0, -60, 100), Eigen::Vector3d(-40, 95, -20), Eigen::Vector3d(30, -85, -70)}) {
+        const SceneMarker marker = marker_on_skin(test::on_analytic_head(near), skin);
+        EXPECT_NEAR(marker.normal_in_ct.norm(), 1, 1e-9);
+        SceneView view = view_along(marker.normal_in_ct, {0, 0, 1});
+        view.zoom = 1;
+        const auto shown = [&](double higher_mm) {
+            SceneMarker moved = marker;
+            moved.p_in_ct += higher_mm * moved.normal_in_ct;
+            scene.markers = std::make_shared<std::vector<SceneMarker>>(1, moved);
+            return sticker_seen(scene, view);
+        };
+        const double free = shown(8);
+        EXPECT_GT(free, 100);
+        EXPECT_GT(shown(0), 0.93 * free) << near.transpose() << ": against one that hovers over the skin";
+    }
+}
+
 TEST(RenderScene, AnEmptySceneIsDarkButHasItsLetters) {
     const RgbImage picture = render_scene({}, {}, 640, 480);
     ASSERT_EQ(picture.width, 640);
@@ -225,6 +259,16 @@ TEST(FitViews, BeforeAndAfterShowTheSameScanAtItsTwoPlaces) {
     OperatorModel without = model;
     without.fit = std::nullopt;
     EXPECT_EQ(scene_of_fit(without, FitView::predicted_error).cloud, model.scene.cloud);
+}
+
+TEST(FitViews, APlaceToBeLookedAtStandsOnBareSkin) {
+    OperatorModel model = test::fake_model();
+    model.look_at = LookAt{{0, -90, 0}, {0, -1, 0}};
+    const SceneModel after = scene_of_fit(model, FitView::after);
+    EXPECT_EQ(after.cloud, nullptr);
+    EXPECT_EQ(after.cloud_distance_mm, nullptr);
+    EXPECT_EQ(after.plan, model.scene.plan);
+    EXPECT_NE(scene_of_fit(model, FitView::before).cloud, nullptr) << "who asks for the scan sees it";
 }
 
 TEST(ViewOfPlan, LooksAtTheSideThePlanIsOn) {

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <new>
 #include <string>
 #include <thread>
 
@@ -33,6 +34,38 @@ void expect_refusal(const std::string& what, const std::string& word, const std:
         expect(std::string(error.what()).find(word) != std::string::npos && !error.remedy.empty(),
                what + ": " + error.what());
     }
+}
+
+/// Fails, once it is told to, for whoever reads it beside the main thread: the thread that owns the picture.
+class FailingClock final : public Clock {
+public:
+    Instant now() const override {
+        if (fails && std::this_thread::get_id() != main_) throw std::bad_alloc();
+        return clock_.now();
+    }
+    std::atomic<bool> fails{false};
+
+private:
+    SteadyClock clock_;
+    std::thread::id main_ = std::this_thread::get_id();
+};
+
+/// What owns the picture has ended of a fault: the light goes with it, and whoever looks after the window is told.
+void fail_to_draw(const std::string& folder) {
+    const Monitor second = list_monitors().at(1);
+    const RgbImage black(second.width, second.height), picture = test::projector_picture(second.width, second.height);
+    FailingClock clock;
+    ProjectorWindow projector(second.name, clock);
+    projector.refresh();
+    projector.show(picture, clock.now() + std::chrono::seconds(60));
+    expect(different(screen(folder, "a_before_the_fault"), second, picture) == 0, "lit before the fault");
+    clock.fails = true;
+    expect_refusal("a picture that nobody draws any more is noticed", "memory", [&] {
+        for (int i = 0; i < 100; ++i) projector.refresh(), std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    });
+    expect(projector.dark() && different(screen(folder, "b_after_the_fault"), second, black) == 0, "and it is dark");
+    projector.go_dark();
+    expect_refusal("darkness that nobody draws is not said to be done", "memory", [&] { projector.refresh(); });
 }
 
 void run(const std::string& folder) {
@@ -107,6 +140,7 @@ int main(int argc, char** argv) {
     const std::string folder = argc > 1 ? argv[1] : ".";
     std::filesystem::create_directories(folder);
     try {
+        fail_to_draw(folder);
         run(folder);
     } catch (const Error& error) {
         expect(false, std::string("thrown: ") + error.what() + "; " + error.remedy);

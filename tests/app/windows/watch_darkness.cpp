@@ -91,6 +91,7 @@ Holder start_holder(const char* self, const std::string& monitor) {
     Holder holder;
     holder.program = fork();
     if (holder.program == 0) {
+        setpgid(0, 0);  // as a shell starts a job
         dup2(ends[1], STDOUT_FILENO);
         close(ends[0]);
         close(ends[1]);
@@ -104,18 +105,24 @@ Holder start_holder(const char* self, const std::string& monitor) {
     return holder;
 }
 
+enum class Hits { program, job, projector };  ///< a job: all that a terminal's Ctrl-Z reaches
 struct Fault {
     const char* name;
     int signal;
-    bool to_projector;
+    Hits hits;
+
+    void strike(const Holder& holder) const {
+        kill(hits == Hits::projector ? holder.projector : hits == Hits::job ? -holder.program : holder.program, signal);
+    }
 };
 constexpr Fault kFaults[] = {
-    {"the program is stopped (SIGSTOP)", SIGSTOP, false},
-    {"the program is killed (SIGKILL)", SIGKILL, false},
-    {"the program deadlocks", SIGUSR1, false},
-    {"the program loops without end", SIGUSR2, false},
-    {"the projector process is stopped", SIGSTOP, true},
-    {"the projector process is killed", SIGKILL, true},
+    {"the program is stopped (SIGSTOP)", SIGSTOP, Hits::program},
+    {"Ctrl-Z in the terminal (SIGTSTP to the job)", SIGTSTP, Hits::job},
+    {"the program is killed (SIGKILL)", SIGKILL, Hits::program},
+    {"the program deadlocks", SIGUSR1, Hits::program},
+    {"the program loops without end", SIGUSR2, Hits::program},
+    {"the projector process is stopped", SIGSTOP, Hits::projector},
+    {"the projector process is killed", SIGKILL, Hits::projector},
 };
 
 void watch(const char* self, const Monitor& monitor, int rounds) {
@@ -130,7 +137,7 @@ void watch(const char* self, const Monitor& monitor, int rounds) {
             const bool lit = holder.projector > 0 && eye.lit();
             if (!lit) expect(false, std::string(fault.name) + ": there was light before");
             std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms(random)));
-            kill(fault.to_projector ? holder.projector : holder.program, fault.signal);
+            fault.strike(holder);
             if (const auto dark = eye.until_dark(5s))
                 times.push_back(*dark);
             else

@@ -46,6 +46,12 @@ TEST_P(PagesInPlace, TheWindowOfAReviewHasRoomForItsWords) {
         for (const bool enabled : {true, false})
             button(drawn_.pen, place.buttons[0], label, {enabled, "it is being read"}, {false, false, key});
     expect_whole("the buttons of a review");
+    for (const Box& box : place.buttons) {
+        EXPECT_GE(box.x, 0);
+        EXPECT_GE(box.y, place.time_line.bottom());
+        EXPECT_LE(box.right(), static_cast<float>(std::get<1>(GetParam()).first));
+        EXPECT_LE(box.bottom(), static_cast<float>(std::get<1>(GetParam()).second));
+    }
 }
 
 TEST_P(PagesInPlace, ThePageOfTheCamerasHasRoom) {

@@ -102,6 +102,7 @@ constexpr const char* kSaying[] = {
     "app/live/live_session_steps.cpp",
     "app/live/resume_steps.cpp",
     "app/live/session_states.cpp",
+    "app/live/silent_session.cpp",
     "app/live/live_window.cpp",
     "app/live/not_kept.cpp",
     "app/live/projector_watch.cpp",
@@ -124,6 +125,7 @@ constexpr const char* kSaying[] = {
     "projection/overlay_loop.cpp",
     "projection/skin_now.cpp",
     "projection/projector_process.cpp",
+    "projection/light_mailbox.cpp",
     "registration/calibration/pose_guide.cpp",
     "registration/calibration/pose_wanted.cpp",
     "registration/matching/judge_match.cpp",
@@ -148,12 +150,13 @@ constexpr const char* kSaying[] = {
 
 /// What these sources say is shown in the window, but for the texts that stand here with the reason.
 const std::set<std::string> kNotShown{
-    "evidence page", "landmark skin", "landmark scan",                 // names of places in the window
-    "light item", "hide item", "show item",                            // what a recording calls a press
-    "Leave it as it is.",                                              // on the terminal
-    "time line",                                                       // name of a place in the window
-    "does not say whose it is", "There is nothing in it to look at.",  // on the terminal, when the window is closed
-    "osteotomy line", "cut plane",                                     // in the place of a name
+    "evidence page", "landmark skin", "landmark scan",                   // names of places in the window
+    "light item", "hide item", "show item",                              // what a recording calls a press
+    "Leave it as it is.",                                                // on the terminal
+    "time line",                                                         // name of a place in the window
+    "does not say whose it is", "There is nothing in it to look at.",    // on the terminal, when the window is closed
+    "holds an event that cannot be understood", "Copy the file again.",  // the same
+    "osteotomy line", "cut plane",                                       // in the place of a name
     // In the light of the projector, and names of faults on the terminal.
     "BOARD HERE", "INTO THE LIGHT", "MORE INTO THE PICTURE", "{} CAMERA BLIND", "{} EDGE NEARER",
     "as a pose that is there", "outside the projector's light", "seen in part only", "too near", "Not found",
@@ -245,6 +248,11 @@ TEST_P(ShippedWords, SayWholeSentencesAsASessionPutsThemTogether) {
     for (const char* text :
          {"Track is not possible now: register first.",
           "2026-03-14T09:30:00Z \u00b7 2402 frames were kept",
+          "Saved as 2026-03-14T09-30-00Z-at-95.000.png, beside the recording.",
+          "The picture could not be saved: a.png: cannot be written: Permission denied.",
+          "The recording stands still: No space left on device. 12 pieces are missing; the light is not affected.",
+          "The recording is being ended.",
+          "A slow disk is given ten seconds.",
           "An anonymous recording does not keep where the plan lies.",
           "No patient had been found by then.",
           "Where the head was at that moment is not known: the plan was not followed.",

@@ -56,5 +56,15 @@ TEST_F(SitesWords, AFileThatIsNotRightLeavesTheWindowInEnglish) {
     EXPECT_EQ(words_of_window({}, {})->code(), "en") << "whatever LANG is";
 }
 
+TEST_F(SitesWords, EveryWindowHasTheSitesLanguageAndThemeWhereNoneIsAskedFor) {
+    SiteSettings site;
+    site.language = "de";
+    site.theme = "bright";
+    EXPECT_EQ(settings_of_window({}, {}, site).theme, ThemeKind::bright);
+    EXPECT_EQ(settings_of_window({}, {}, site).words->code(), "de");
+    EXPECT_EQ(settings_of_window("ru", "dark", site).theme, ThemeKind::dark) << "the options override the site";
+    EXPECT_EQ(settings_of_window("ru", "dark", site).words->code(), "ru");
+}
+
 }  // namespace
 }  // namespace planlight

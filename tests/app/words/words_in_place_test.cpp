@@ -21,8 +21,8 @@ protected:
                                            {"Register", &model.do_register},
                                            {"Track", &model.track},
                                            {"Stop", &model.stop}}) {
-            button(drawn_.pen, box, label, *state, {false, true, "S · Enter"});
-            button(drawn_.pen, box, label, {true, {}}, {false, true, "S · Enter"});
+            button(drawn_.pen, box, label, *state, {false, true, keys_of_button(KeyMeaning::scan, true)});
+            button(drawn_.pen, box, label, {true, {}}, {false, true, keys_of_button(KeyMeaning::scan, true)});
             box.x += width + place.gap;
         }
     }
@@ -41,7 +41,7 @@ TEST_P(WordsInPlace, EveryButtonHasRoomForItsWordAndItsReason) {
     const Box corner = corner_button(drawn_.place.scene, scale);
     for (const char* label : {"It fits: use it", "Show landmarks", "Light 2 is right", "Go on with the last match",
                               "Check skin", "Landmarks", "Show the whole plan"})
-        button(drawn_.pen, corner, label, {true, {}}, {false, true, "C · Enter"});
+        button(drawn_.pen, corner, label, {true, {}}, {false, true, keys_of_button(KeyMeaning::confirm, true)});
     expect_whole("in the corner of the view");
     Box fit = fit_row(drawn_.place.scene, scale);
     fit.width = (fit.width - 16 * scale) / 3;
@@ -89,9 +89,11 @@ TEST_P(WordsInPlace, HeaderAndTableHaveRoom) {
         for (const StepState state : {StepState::active, StepState::attention, StepState::done}) {
             model.case_side = side;
             model.steps.fill(state);
-            model.simulated = true;
-            draw_header(drawn_.pen, drawn_.place, model);
-            expect_whole(side);
+            for (const RoomKind kind : {RoomKind::simulated, RoomKind::recorded}) {
+                model.room_kind = kind;
+                draw_header(drawn_.pen, drawn_.place, model);
+                expect_whole(side);
+            }
         }
     for (PlanRow& row : model.rows) row.name = "B";
     model.evidence.clear();
@@ -104,6 +106,28 @@ TEST_P(WordsInPlace, HeaderAndTableHaveRoom) {
     CameraPicture camera{"Right camera", {}, 0, "no picture yet", {}};
     draw_camera(drawn_.pen, drawn_.place.left_camera, camera, false, nullptr);
     expect_whole("camera");
+}
+
+// The name gives way, and in its middle; version, date and what the room is do not.
+TEST_P(WordsInPlace, TheHeaderOfALongNameCutsNothingElse) {
+    OperatorModel model = test::fake_model();
+    model.case_title = "Maximiliana-Alexandrina von und zu Hohenlohe-Schillingsfürst, born 1951, 00514711";
+    model.case_plan = "Right frontal craniotomy after the tumour board, version 3 · series of 2012-09-14";
+    for (const RoomKind kind : {RoomKind::real, RoomKind::simulated, RoomKind::recorded}) {
+        model.room_kind = kind;
+        draw_header(drawn_.pen, drawn_.place, model);
+        for (const std::string& text : drawn_.cut) EXPECT_LT(width(), 1280) << "no room for \"" << text << "\"";
+        drawn_.cut.clear();
+    }
+}
+
+TEST_P(WordsInPlace, NoLineEndsBetweenANumberAndItsUnit) {
+    constexpr std::size_t kAnyLines = 99;
+    const std::string text = "Half of them lie within 0.09 mm of the plan, 95 % within 0.23 mm.";
+    for (float room = 60; room < 900; room += 7)
+        for (const std::string& line : broken(drawn_.pen.fonts.body, text, room, kAnyLines)) {
+            EXPECT_FALSE(line.starts_with("mm") || line.starts_with("%")) << line;
+        }
 }
 
 // Whatever stands in the other columns: the name matters most.

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "planning_io/files/keep_to_owner.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "tests/support/test_data.h"
@@ -55,6 +56,21 @@ TEST(SafeWrite, AFileForItsOwnerIsSoFromItsFirstByteOnAlsoInPlaceOfOneForAll) {
         ReadableBy::owner);
     EXPECT_EQ(read_whole(file), "a face");
     EXPECT_EQ(perms(file), fs::perms(0600));
+}
+
+TEST(KeepToOwner, AFolderAndAllInItAreTheirOwnersWhateverTheUmaskMadeOfThem) {
+    const test::TemporaryFolder folder;
+    const fs::path made = folder.path() / "face", file = made / "deeper" / "skin", elsewhere = folder.path() / "mine";
+    fs::create_directories(made / "deeper");
+    for (const fs::path& one : {file, elsewhere}) write_safely(one, "x");
+    for (const fs::path& one : {made, made / "deeper"}) fs::permissions(one, fs::perms(0755));
+    for (const fs::path& one : {file, elsewhere}) fs::permissions(one, fs::perms(0644));
+    fs::create_symlink(elsewhere, made / "link");
+    keep_to_owner(made);
+    for (const fs::path& one : {made, made / "deeper"}) EXPECT_EQ(fs::status(one).permissions(), fs::perms(0700));
+    EXPECT_EQ(fs::status(file).permissions(), fs::perms(0600));
+    EXPECT_EQ(fs::status(elsewhere).permissions(), fs::perms(0644)) << "a link leads to what is somebody else's";
+    EXPECT_THROW(keep_to_owner(folder.path() / "none"), DiskError);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <random>
 #include <thread>
 
+#include "planning_io/recording/file_window.h"
 #include "planning_io/recording/packed_pictures.h"
 #include "planning_io/recording/recording_reader.h"
 #include "planning_io/recording/recording_writer.h"
@@ -66,6 +67,21 @@ TEST(Recording, WhoseFolderCannotBeMadeIsRefusedAsTheDisksDoing) {
     } catch (const DiskError& fault) {
         EXPECT_EQ(fault.remedy.find("Make room"), std::string::npos) << "there is room: " << fault.remedy;
     }
+}
+
+TEST(Recording, WhoJumpsFromHeaderToHeaderReadsLittleAndWhoGoesOnReadsAllOnce) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "pictures";
+    std::string bytes(std::size_t{10'000'000}, '\0');
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * i % 251);
+    put_bytes(file, bytes);
+    FileWindow jumps(file), goes_on(file);
+    for (std::size_t at = 0; at < bytes.size(); at += 250'000)
+        EXPECT_EQ(jumps.bytes(at, 32), std::string_view(bytes).substr(at, 32));
+    EXPECT_LE(jumps.bytes_read(), 40u * 8192) << "of 40 pictures";
+    for (std::size_t at = 0; at < bytes.size(); at += 1000)
+        EXPECT_EQ(goes_on.bytes(at, 1000), std::string_view(bytes).substr(at, 1000));
+    EXPECT_LT(goes_on.bytes_read(), bytes.size() * 11 / 10);
 }
 
 TEST(Recording, KeepsEveryPixelAndTimeOfAFrame) {

@@ -97,10 +97,10 @@ TEST(Recording, AFullDiskIsSaidAndTheRecordingGoesOnWhenThereIsRoomAgain) {
         disk.full = true;
         writer.add({chunk_types::kEvent, Instant(1), "waits"});
         while (writer.state().problem.empty()) std::this_thread::sleep_for(1ms);
-        EXPECT_EQ(writer.state().problem, "x: is full");
+        EXPECT_EQ(writer.state().problem.whole, "x: is full");
         disk.full = false;
         while (writer.state().written_chunks < 2) std::this_thread::sleep_for(1ms);
-        EXPECT_EQ(writer.state().problem, "");
+        EXPECT_TRUE(writer.state().problem.empty());
     }
     const fs::path file = folder.path() / "session.plrec";
     put_bytes(file, disk.bytes);
@@ -152,7 +152,7 @@ TEST(Recording, OfWhichTheDiskDidNotTakeAPieceAtTheEndIsCutThereAndNeverWhole) {
     EXPECT_EQ(read_all(reader).size(), 1u) << "what stands behind a gap looks like its neighbour";
     EXPECT_EQ(reader.end(), RecordingEnd::cut);
     EXPECT_EQ(state.dropped_chunks, 2u) << "the frame and the event; the last word is no piece of the session";
-    EXPECT_EQ(state.problem, "x: is full");
+    EXPECT_EQ(state.problem.whole, "x: is full");
 }
 
 TEST(Recording, ItsLastWordCountsAllThatWasDroppedWhenItIsWritten) {
@@ -188,7 +188,7 @@ TEST(Recording, ASyncThatFailedIsToldForGood) {
     while (writer.state().sync_problem.empty()) std::this_thread::sleep_for(1ms);
     disk.sync_fails = false;
     writer.add({chunk_types::kEvent, Instant(1), text(1)});
-    EXPECT_EQ(writer.finish(Instant(2)).sync_problem, "x: cannot be synced to the disk");
+    EXPECT_EQ(writer.finish(Instant(2)).sync_problem.whole, "x: cannot be synced to the disk");
 }
 
 TEST(Recording, ALimitOnTheFilesSizeLeavesWholeChunksAndEndsNothing) {
@@ -206,7 +206,7 @@ TEST(Recording, ALimitOnTheFilesSizeLeavesWholeChunksAndEndsNothing) {
             RecordingWriter writer(std::make_unique<RecordingFile>(file), settings);
             for (std::size_t i = 0; i < 400; ++i) writer.add({chunk_types::kEvent, Instant(i), text(i)});
             while (writer.state().problem.empty()) std::this_thread::sleep_for(1ms);
-            if (writer.state().problem.find("File too large") == std::string::npos) code = 1;
+            if (writer.state().problem.in_few_words != "File too large") code = 1;
         }
         ::_exit(code);
     }

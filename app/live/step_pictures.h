@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/windows/operator_model.h"
+
+namespace planlight {
+
+class OperatorWindow;
+
+/// Screenshots of the operator window, for their owner alone: one whenever the status changes its kind or something
+/// else is asked, once the window has settled. Called BEGIN-NUMBER-STATE.png: operator-09-check-light-1-is-right.png.
+class StepPictures {
+public:
+    /// `folder` is made; empty: nothing is taken.
+    StepPictures(std::filesystem::path folder, std::string begin);
+
+    /// At each look at the session. What stands behind the first word of the picture that was taken, to name others of
+    /// that moment ("09-check-light-1-is-right.png"); empty: none was. Throws DiskError.
+    std::string take(OperatorWindow& window, const OperatorModel& model);
+    const std::filesystem::path& folder() const { return folder_; }
+
+private:
+    std::filesystem::path folder_;
+    std::string begin_, state_;  ///< the state at the look before
+    int looks_ = 0, number_ = 0;
+};
+
+}  // namespace planlight

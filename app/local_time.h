@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+namespace planlight {
+
+/// A moment of UTC (ISO 8601, "2026-03-14T20:30:05Z") as this computer's clock on the wall has it, with how far that is
+/// from UTC: "2026-03-15 02:00:05 (UTC+05:30)". Where the clock is that of UTC: "2026-03-14 20:30:05 UTC". Empty for
+/// what is no such moment.
+std::string local_time(const std::string& utc);
+
+/// The same without its day and seconds: "02:00 (UTC+05:30)".
+std::string local_time_of_day(const std::string& utc);
+
+/// Both clocks, for who compares with another system: "2026-03-14 20:30:05 UTC; here 2026-03-15 02:00:05 (UTC+05:30)".
+std::string utc_and_local_time(const std::string& utc);
+
+}  // namespace planlight

@@ -1,0 +1,206 @@
+#include "planning_io/plan/plan_file.h"
+#include "tests/app/live/live_session_fixture.h"
+
+namespace planlight {
+namespace {
+
+TEST_F(LiveSessionTest, LightIsConfirmedOncePerPressAndDarkLeadsBackToTheMatch) {
+    followed();
+    wait_for(*session, "the question", [](const OperatorModel& m) { return m.confirm; });
+    hold();
+    EXPECT_EQ(session->post(OperatorAction::confirm), "");
+    EXPECT_NE(session->post(OperatorAction::confirm), "") << "the next landmark has not been lit yet";
+    held = false;
+    const OperatorModel first =
+        wait_for(*session, "the first landmark", [](const OperatorModel& m) { return m.confirm; });
+    EXPECT_GE(counts.since, 12) << "half a second at 25 frames/s: a press that bounces has looked at nothing";
+    EXPECT_EQ(first.confirm_words, "Light 1 is right");
+    EXPECT_EQ(first.next, OperatorAction::confirm);
+    for (const std::string& detail : first.status.details)
+        EXPECT_EQ(detail.find("Show landmarks"), std::string::npos) << "there is no such button any more: " << detail;
+    session->post(OperatorAction::dark);
+    const OperatorModel dark = session->model();
+    EXPECT_EQ(dark.status.kind, StatusKind::dark);
+    EXPECT_EQ(dark.figures, Figures{});
+    EXPECT_FALSE(dark.confirm);
+    EXPECT_FALSE(dark.light_on);
+    EXPECT_TRUE(dark.track.enabled) << "the match is kept";
+    EXPECT_TRUE(dark.fit);
+}
+
+// The others are dim on the skin, and the light of the one that is bright is what is measured.
+TEST_F(LiveSessionTest, OneItemOfThePlanAloneIsBrightAndThenTheWholePlanAgain) {
+    EXPECT_NE(session->post_item(OperatorAction::light_item, 0), "") << "there is no match yet";
+    const OperatorModel plan = followed();
+    ASSERT_TRUE(plan.may_light_item);
+    ASSERT_GT(plan.rows.size(), 2U);
+    const auto lit = [&](const char* what, const auto& holds) {
+        wait_for(*session, what, [&](const OperatorModel& m) { return holds(m) && bright_pixels() > 0; });
+        return bright_pixels();
+    };
+    const long whole = lit("the plan", [](const OperatorModel& m) { return !m.item_of_moment; });
+    EXPECT_EQ(session->post_item(OperatorAction::light_item, 1), "");
+    const auto told = [](const OperatorModel& m) {
+        return std::any_of(m.status.details.begin(), m.status.details.end(),
+                           [](const std::string& detail) { return detail.find("\" is bright") != std::string::npos; });
+    };
+    const long alone = lit("one item", [&](const OperatorModel& m) { return m.item_of_moment == 1U && told(m); });
+    EXPECT_LT(alone, whole / 2);
+    EXPECT_EQ(session->model().scene.bright_item, 1);
+    EXPECT_EQ(session->post_item(OperatorAction::light_item, std::nullopt), "");
+    const long again = lit("the plan", [&](const OperatorModel& m) { return !m.item_of_moment && !told(m); });
+    EXPECT_GT(again, 0.8 * static_cast<double>(whole));
+    session->post(OperatorAction::scan);
+    EXPECT_FALSE(session->model().item_of_moment);
+}
+
+// From the first picture of the window to the first light that is verified, by the one key that leads on (Enter, or a
+// pedal): nothing is typed, nothing chosen.
+TEST_F(LiveSessionTest, TheKeyThatLeadsOnComesToVerifiedLightInSixPresses) {
+    int presses = 0;
+    std::string last;
+    for (;;) {
+        const OperatorModel model = wait_for(*session, "what leads on", [&](const OperatorModel& m) {
+            const bool same = m.next == OperatorAction::confirm && m.confirm_words == last;
+            return m.status.kind == StatusKind::aligned || (m.next != OperatorAction::none && !same);
+        });
+        if (model.status.kind == StatusKind::aligned) break;
+        last = model.confirm_words;
+        ASSERT_EQ(session->post(model.next), "") << "what leads on is possible";
+        ASSERT_LE(++presses, 12);
+    }
+    EXPECT_EQ(presses, 6) << "Scan, Register, Track, Show landmarks, Light 1 is right, Light 2 is right";
+}
+
+// CHECK measures the plan beside it as ever: the gate comes to its question, and the words ask to read the card.
+TEST_F(LiveSessionTest, TheCardWithThePatientsNameIsLitUntilALandmarkHasBeen) {
+    followed();
+    const auto asks = [](const OperatorModel& m) { return says(m, "Read the card on the skin"); };
+    const OperatorModel first = wait_for(*session, "the question",
+                                         [&](const OperatorModel& m) { return says(m, "two landmarks") && m.confirm; });
+    EXPECT_TRUE(asks(first)) << first.status.details.back();
+    for (const PlanRow& row : first.rows) EXPECT_LT(row.light_off_mm.value_or(0), 1);
+    const long with_card = bright_pixels();
+    for (int yes = 0; yes < 3; ++yes) {
+        wait_for(*session, "the question", [](const OperatorModel& m) { return m.confirm; });
+        session->post(OperatorAction::confirm);
+    }
+    const OperatorModel after =
+        wait_for(*session, "ALIGNED", [](const OperatorModel& m) { return m.status.kind == StatusKind::aligned; });
+    EXPECT_FALSE(asks(after));
+    EXPECT_LT(bright_pixels(), with_card);
+}
+
+// What a person hid is not lit, and not missed: the light of the rest is judged, and the words say that it is a part.
+TEST_F(LiveSessionTest, AHiddenItemIsNeitherLitNorMissedAndAllHiddenIsDarkAndSaysSo) {
+    EXPECT_NE(session->post_item(OperatorAction::hide_item, 0), "") << "there is no match yet";
+    const std::size_t count = followed().rows.size();
+    ASSERT_GT(count, 2U);
+    const auto lit = [&](const char* what, const auto& holds) {
+        return wait_for(*session, what, [&](const OperatorModel& m) { return holds(m) && bright_pixels() > 0; });
+    };
+    lit("the plan", [](const OperatorModel& m) { return m.rows[0].light_off_mm && m.rows[1].light_off_mm; });
+    const long whole = bright_pixels();
+    EXPECT_EQ(session->post_item(OperatorAction::hide_item, 0), "");
+    EXPECT_EQ(session->post_item(OperatorAction::hide_item, 1), "");
+    const OperatorModel rest = lit("the rest", [](const OperatorModel& m) {
+        return m.rows[1].hidden && m.rows[2].light_off_mm && says(m, "2 of ") && says(m, "two landmarks");
+    });
+    EXPECT_LT(bright_pixels(), 0.9 * static_cast<double>(whole));
+    EXPECT_TRUE(rest.rows[0].hidden);
+    EXPECT_FALSE(rest.rows[0].light_off_mm) << "nobody looks for light that is not there";
+    EXPECT_FALSE(says(rest, "is not measured")) << "the gate asks for what is shown alone";
+    for (const Stroke& stroke : rest.scene.plan->strokes) EXPECT_GT(stroke.item, 1) << "nor is it in the 3-D view";
+    // Landmarks are lit as ever, and the light of the part is trusted as a part.
+    for (int yes = 0; yes < 3; ++yes) {
+        wait_for(*session, "the question", [](const OperatorModel& m) { return m.confirm; });
+        session->post(OperatorAction::confirm);
+    }
+    const OperatorModel aligned =
+        wait_for(*session, "ALIGNED", [](const OperatorModel& m) { return m.status.kind == StatusKind::aligned; });
+    EXPECT_EQ(aligned.status.headline, "What is shown of the plan is on the skin.");
+    EXPECT_TRUE(says(aligned, fmt::format("2 of {} items are hidden", count)));
+    for (std::size_t i = 2; i < count; ++i) EXPECT_EQ(session->post_item(OperatorAction::hide_item, i), "");
+    const OperatorModel none = wait_for(*session, "darkness", [](const OperatorModel& m) {
+        return m.status.headline == "Dark: every item of the plan is hidden.";
+    });
+    EXPECT_EQ(none.status.kind, StatusKind::dark);
+    EXPECT_EQ(bright_pixels(), -1);
+    // One item alone is shown by that; then the whole plan, by one press.
+    EXPECT_EQ(session->post_item(OperatorAction::light_item, 1), "");
+    lit("an item that was hidden", [](const OperatorModel& m) { return m.item_of_moment == 1U && !m.rows[1].hidden; });
+    EXPECT_EQ(session->post_item(OperatorAction::show_item, std::nullopt), "");
+    const OperatorModel again = lit("the plan", [](const OperatorModel& m) {
+        return !m.item_of_moment && m.rows[0].light_off_mm && m.status.kind == StatusKind::aligned;
+    });
+    EXPECT_EQ(again.status.headline, "The plan is on the skin.");
+    for (const PlanRow& row : again.rows) EXPECT_FALSE(row.hidden);
+}
+
+/// The simulated room with stickers that all slip along the skin by 2.5 mm when they are told to: as far as they can so
+/// that they still agree with each other, and farther than light may lie beside the plan.
+class SlippingRoom final : public Room {
+public:
+    explicit SlippingRoom(const simulation::RoomSettings& settings)
+        : rig_(test::example_case().volume, points_of(test::example_case().prepared.plan), settings) {}
+    std::string name() const override { return "a room whose markers slip"; }
+    const RigCalibration& rig() const override { return rig_.calibration(); }
+    Projector& projector() override { return rig_.projector(); }
+    StereoCamera& cameras() override { return rig_.cameras(); }
+    const Clock& clock() const override { return rig_.clock(); }
+    RoomKind kind() const override { return RoomKind::simulated; }
+    void computing() override { rig_.wait(10ms); }
+    void slip() { rig_.slip_marker(-1, {1.0, -1.0, 2.05}); }
+
+private:
+    simulation::SimulatedRig rig_;
+};
+
+class LiveSessionWithSlippedMarkers : public LiveSessionTest {
+protected:
+    std::unique_ptr<Room> made_room() override {
+        auto made = std::make_unique<SlippingRoom>(room);
+        entered = made.get();
+        return made;
+    }
+    OperatorModel refused() {
+        return wait_for(*session, "the refusal",
+                        [](const OperatorModel& m) { return m.status.kind == StatusKind::refused && m.track.enabled; });
+    }
+    SlippingRoom* entered = nullptr;  ///< once the session is ready
+};
+
+// All markers slipped together: they agree with each other, and the light with them; only the skin tells. From then on
+// there is no light by that match, however often Track is pressed.
+TEST_F(LiveSessionWithSlippedMarkers, SkinThatLiesAsideForbidsLightUntilTheNextMatch) {
+    followed();
+    hold();
+    entered->slip();
+    held = false;
+    wait_for(*session, "the button", [](const OperatorModel& m) { return m.check_skin; });
+    ASSERT_EQ(session->post(OperatorAction::check_skin), "");
+    const OperatorModel first = refused();
+    EXPECT_TRUE(says(first, "skin")) << first.status.headline;
+    EXPECT_EQ(first.next, OperatorAction::scan) << "Enter and the pedal lead to a new scan";
+    EXPECT_EQ(bright_pixels(), -1);
+    const int updates = counts.since;
+    for (int press = 1; press <= 3; ++press) {
+        const int before = counts.forbidden;
+        EXPECT_EQ(session->post(OperatorAction::track), "") << "there for who knows better";
+        wait_for(*session, "the gate", [&](const OperatorModel&) {
+            EXPECT_EQ(bright_pixels(), -1);
+            return counts.forbidden > before;
+        });
+        const OperatorModel again = refused();
+        EXPECT_EQ(again.status.headline, first.status.headline);
+        EXPECT_EQ(again.next, OperatorAction::scan);
+        EXPECT_FALSE(again.light_on);
+        EXPECT_EQ(bright_pixels(), -1);
+    }
+    EXPECT_EQ(counts.since, updates) << "nothing was even drawn";
+    followed();  // scan, match, Track: there is light
+    EXPECT_GT(bright_pixels(), 0);
+}
+
+}  // namespace
+}  // namespace planlight
