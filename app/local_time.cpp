@@ -33,10 +33,12 @@ std::string local_time(const std::string& utc) {
     return fmt::format("{:%Y-%m-%d %H:%M:%S} {}", *local, local->tm_gmtoff == 0 ? "UTC" : zone_of(*local));
 }
 
-std::string local_time_of_day(const std::string& utc) {
-    const auto local = here(utc);
+std::string local_time_of_day(const std::string& utc, const std::string& now_utc) {
+    const auto local = here(utc), now = here(now_utc);
     if (!local) return {};
-    return fmt::format("{:%H:%M} {}", *local, local->tm_gmtoff == 0 ? "UTC" : zone_of(*local));
+    const bool same_day = now && local->tm_year == now->tm_year && local->tm_yday == now->tm_yday;
+    return fmt::format("{} {}", same_day ? fmt::format("{:%H:%M}", *local) : fmt::format("{:%Y-%m-%d %H:%M}", *local),
+                       local->tm_gmtoff == 0 ? "UTC" : zone_of(*local));
 }
 
 std::string utc_and_local_time(const std::string& utc) {

@@ -17,6 +17,7 @@
 #include "planning_io/volume/read_volume.h"
 #include "projection/check_plan.h"
 #include "projection/label_names.h"
+#include "segmentation/skin_threshold.h"
 
 namespace planlight {
 namespace {
@@ -168,9 +169,10 @@ Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSetti
     done.pieces_removed = mask.pieces_removed;
     add_warnings(mask.warnings, watcher, the_case);
     if (volume.modality == "CT" && !volume.is_hu)
-        add_warnings({fmt::format("the values of this CT are not HU; the skin threshold {:.4g} was {}: look at the "
+        add_warnings({fmt::format("the values of this CT are not HU; the skin threshold {} was {}: look at the "
                                   "skin before you use it",
-                                  done.threshold, done.threshold_given ? "given" : "found from their histogram")},
+                                  threshold_text(done.threshold),
+                                  done.threshold_given ? "given" : "found from their histogram")},
                      watcher, the_case);
     done.triangulate_s = timed("surface", watcher,
                                [&](const auto& share) { the_case.skin = triangulate_skin(volume, mask, skin, share); });

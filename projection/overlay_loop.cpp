@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "projection/picture_validity.h"
+
 namespace planlight {
 namespace {
 
@@ -136,7 +138,7 @@ OverlayStep OverlayLoop::Parts::draw(const TrackedPose& pose) {
     const Instant shown = clock.now();
     if (auto reason = pose_refusal(pose, shown, settings); !reason.empty())
         return dark(std::move(reason));  // rendering took too long
-    step.lit_from = projector.show(step.picture, shown + settings.picture_validity);
+    step.lit_from = projector.show(step.picture, shown + picture_validity(settings.picture_validity, usual_life));
     step.lit = true;
     note_shown(shown);
     note_promise(step.lit_from - now);

@@ -11,6 +11,7 @@
 #include "segmentation/blank_places.h"
 #include "segmentation/head_outline.h"
 #include "segmentation/outside_air.h"
+#include "segmentation/skin_threshold.h"
 
 namespace planlight {
 namespace {
@@ -199,8 +200,8 @@ SkinMask segment_mr_skin(const Volume& volume, const SkinSettings& settings,
     }
     if (outline.volume_ml <= 0 || outline.levels.empty()) refuse("nothing thick stands out against the air");
     if (outline.volume_ml < kLeastBody_ml)
-        refuse(fmt::format("the largest piece denser than {:.3g} has {:.1f} ml", middle_threshold(outline.levels),
-                           outline.volume_ml));
+        refuse(fmt::format("the largest piece denser than {} has {:.1f} ml",
+                           threshold_text(middle_threshold(outline.levels)), outline.volume_ml));
     report(0.5);
 
     result.levels = outline.levels;

@@ -12,6 +12,7 @@
 #include "segmentation/series_doubts.h"
 #include "segmentation/skin_layers.h"
 #include "segmentation/skin_shape.h"
+#include "segmentation/skin_threshold.h"
 #include "segmentation/slice_steps.h"
 #include "segmentation/things_on_skin.h"
 
@@ -189,11 +190,11 @@ void judge_edges(const SkinMask& mask, SkinJudgement& r) {
             kLook);
     const std::string unsure = fmt::format(
         "{:.0f} % of the outline moves by more than 3 mm when the threshold is taken at 0.7 or 1.5 "
-        "times what was found ({:.3g})",
-        100 * mask.unsure_share, mask.threshold_said);
+        "times what was found ({})",
+        100 * mask.unsure_share, threshold_text(mask.threshold_said));
     const std::string tries =
-        fmt::format("Try `planlight prepare --threshold {:.3g}` and {:.3g}, and compare the pictures of the report.",
-                    0.7 * mask.threshold_said, 1.5 * mask.threshold_said);
+        fmt::format("Try `planlight prepare --threshold {}` and {}, and compare the pictures of the report.",
+                    threshold_text(0.7 * mask.threshold_said), threshold_text(1.5 * mask.threshold_said));
     r.unsure = mask.unsure_share > kUnsure_doubted;
     if (mask.unsure_share > kUnsure_refused)
         add(r.refusals, "The skin cannot be told from what surrounds it: " + unsure, tries);
@@ -315,10 +316,9 @@ void judge_cuts(SkinJudgement& r) {
     for (const CutSide& side : r.cut_sides)
         if (side.boneless_cm2 > kBonelessEnd_cm2)
             add(r.doubts,
-                fmt::format(
-                    "At the {} the volume ends over {:.0f} square cm within something that has no bone under it "
-                    "nor round it: something lies on the head there (a cushion, wet hair, a blanket)",
-                    side.name, side.boneless_cm2),
+                fmt::format("At {} the volume ends over {:.0f} square cm within something that has no bone under it "
+                            "nor round it: something lies on the head there (a cushion, wet hair, a blanket)",
+                            "the " + side.name, side.boneless_cm2),
                 kLook);
     if (count > 0)
         add(r.doubts, fmt::format("The volume ends within the head: it cuts off {}; what lies there is no skin", sides),

@@ -1,5 +1,7 @@
 #include "segmentation/skin_threshold.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -121,6 +123,10 @@ double skin_threshold(const Volume& volume, bool phantom) {
     const Histogram h = histogram_of(volume.values, low, high + (high - low) * 1e-6, 256);
     const std::size_t split = otsu(h);
     return (peak(h, 0, split) + peak(h, split + 1, h.counts.size() - 1)) / 2;
+}
+
+std::string threshold_text(double threshold) {
+    return std::abs(threshold) < 99.95 ? fmt::format("{:.3g}", threshold) : fmt::format("{:.0f}", threshold);
 }
 
 }  // namespace planlight

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "planning_io/types/volume.h"
 
 namespace planlight {
@@ -11,5 +13,9 @@ namespace planlight {
 /// between the peaks on both sides of Otsu's threshold (Otsu 1979). Of a phantom in HU any matter counts for soft
 /// tissue. Throws InputError when there are no two peaks.
 double skin_threshold(const Volume& volume, bool phantom = false);
+
+/// As a person reads it and `planlight prepare --threshold` takes it: three digits, whole from 100 on ("0.214",
+/// "-87.4", "12346"), never with an exponent.
+std::string threshold_text(double threshold);
 
 }  // namespace planlight

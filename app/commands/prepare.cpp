@@ -18,6 +18,7 @@
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/spare_memory.h"
 #include "planning_io/volume/read_volume.h"
+#include "segmentation/skin_threshold.h"
 
 namespace planlight {
 namespace {
@@ -83,8 +84,9 @@ Preparation prepare(const Inputs& in, const PrepareOptions& options, ProgressBar
         Path picture = options.out;
         picture += ".thresholds.png";
         write_png(thresholds_picture(volume, skin, threshold), picture);
-        bar.note(fmt::format("The skin at {:.3g}, {:.3g} and {:.3g} side by side: {}", kLowerThreshold * threshold,
-                             threshold, kHigherThreshold * threshold, picture.string()));
+        bar.note(fmt::format("The skin at {}, {} and {} side by side: {}", threshold_text(kLowerThreshold * threshold),
+                             threshold_text(threshold), threshold_text(kHigherThreshold * threshold),
+                             picture.string()));
     };
     const PreparationWatcher watcher{bar.callback(), told, show_thresholds};
     Preparation done =
@@ -116,7 +118,7 @@ void print_summary(const Preparation& done, const PrepareOptions& options) {
     const Case& c = done.prepared;
     fmt::print("{}\nCase {} in {}: {}, {} triangles, LUT {} x {} x {} voxels of {:.2f} mm, {} plan items.\n",
                title_of(c), c.code, options.out.string(),
-               done.on_given_surface ? "on the surface given" : fmt::format("skin at {:.4g}", done.threshold),
+               done.on_given_surface ? "on the surface given" : "skin at " + threshold_text(done.threshold),
                c.skin.triangles.size(), c.lut.size[0], c.lut.size[1], c.lut.size[2], c.lut.voxel_mm, c.plan.size());
     fmt::print("Report: {}\n", (options.out / "report.html").string());
 }

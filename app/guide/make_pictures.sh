@@ -1,6 +1,6 @@
 #!/bin/bash
 # make_pictures.sh PLANLIGHT [FOLDER]: makes the pictures of this guide anew, as the program's own commands show them, in the simulated room
-# (FOLDER: where they are put; default: this guide). Needs xvfb-run, xdotool, ImageMagick and pdftoppm (of poppler-utils); takes some minutes. Look at each
+# (FOLDER: where they are put; default: this guide). Needs xvfb-run, xdotool, ImageMagick, pdftoppm (of poppler-utils) and chromium; takes some minutes. Look at each
 # before it is kept. `cameras.png` and `guided.png` are left by `tests/app/windows/two_monitors.sh` (cameras, calibrate_served_room).
 set -e
 here=$(cd "$(dirname "$0")" && pwd)
@@ -51,6 +51,9 @@ small aligned.png "$out/../example/demo.png"
 small landmarks.png "$out/../windows/landmarks.png"
 screen "$program" review recordings/*.plrec --case case --show --at 4 --picture review.png
 small review.png "$out/session-review.png"
+"$program" review recordings/*.plrec --case case --at 20 --out review
+chromium --headless --no-sandbox --hide-scrollbars --window-size=1000,1500 --screenshot=review-page.png "file://$work/review/index.html"
+small review-page.png "$out/review-page.png"
 "$program" report recordings/*.plrec --out operation.html --pdf operation.pdf
 page operation.pdf "$out/operation.png"
 

@@ -11,6 +11,7 @@
 #include "planning_io/case/case_folder.h"
 #include "planning_io/files/header_text.h"
 #include "planning_io/files/safe_write.h"
+#include "segmentation/skin_threshold.h"
 
 namespace planlight {
 namespace {
@@ -75,7 +76,8 @@ std::string time_in_words(const std::string& iso) {
 
 std::string threshold_of(const Preparation& done) {
     if (done.on_given_surface) return "none: the surface was given, not segmented here";
-    return fmt::format("{:.4g} {}, {}", done.threshold, done.volume.is_hu ? "HU" : "(stored values, not HU)",
+    return fmt::format("{} {}, {}", threshold_text(done.threshold),
+                       done.volume.is_hu ? "HU" : "(stored values, not HU)",
                        done.threshold_given ? "given by hand" : "found automatically");
 }
 

@@ -53,6 +53,37 @@ Chart::Points worst_of(const RecordingTimeLine& line, double unit_s, double Reco
     return points;
 }
 
+/// What the light was, all in all, and what of it a person should look at first.
+PageVerdict verdict_of(const RecordingTimeLine& line) {
+    double seconds_of[3] = {0, 0, 0};
+    const RecordingTimeLine::Stretch* worst = nullptr;
+    for (const auto& stretch : line.stretches) {
+        seconds_of[static_cast<std::size_t>(stretch.trust)] += stretch.to_s - stretch.from_s;
+        if (stretch.off_mm >= 0 && (!worst || stretch.off_mm > worst->off_mm)) worst = &stretch;
+    }
+    const auto of = [&](LightTrust trust) { return seconds_of[static_cast<std::size_t>(trust)]; };
+    PageVerdict verdict;
+    verdict.words =
+        line.stretches.empty()
+            ? "The plan was not followed: there was no light of it."
+            : fmt::format("The plan was followed for {}: aligned for {}, to be looked at for {}, dark for {}.",
+                          duration_text(of(LightTrust::aligned) + of(LightTrust::look) + of(LightTrust::dark)),
+                          duration_text(of(LightTrust::aligned)), duration_text(of(LightTrust::look)),
+                          duration_text(of(LightTrust::dark)));
+    if (worst)
+        verdict.reasons.push_back(fmt::format(
+            "At worst the cameras measured the light {:.2f} mm beside the plan (95 % of it), {:.1f} s after "
+            "the room was entered.",
+            worst->off_mm, worst->from_s));
+    if (!line.ended.empty()) verdict.reasons.push_back(line.ended);
+    const double off_mm = worst ? worst->off_mm : 0;
+    if (line.damaged || line.damaged_pictures || off_mm > kOperationStop_mm)
+        verdict.kind = PageVerdict::Kind::stop;
+    else if (!line.ended.empty() || off_mm > kOperationLook_mm || line.stretches.empty())
+        verdict.kind = PageVerdict::Kind::look;
+    return verdict;
+}
+
 }  // namespace
 
 std::string review_page(const RecordingTimeLine& line, const std::vector<std::pair<std::string, std::string>>& pictures,
@@ -70,7 +101,6 @@ std::string review_page(const RecordingTimeLine& line, const std::vector<std::pa
     errors.dots(worst_of(line, unit_s, &RecordingTimeLine::Stretch::predicted_mm, kMost_mm), Rgb{0x9a, 0x5b, 0xb0});
     errors.dots(worst_of(line, unit_s, &RecordingTimeLine::Stretch::off_mm, kMost_mm), Rgb{0x15, 0x40, 0x6b});
     std::string body;
-    if (!line.ended.empty()) body += "<p class=\"stop\">" + xml_escaped(line.ended) + "</p>";
     body +=
         "<h2>What the light was</h2>" + gate.svg() +
         "<p>High and green: aligned. Middle and amber: to be looked at. Low and dark: no light. Nothing: the plan was "
@@ -89,7 +119,7 @@ std::string review_page(const RecordingTimeLine& line, const std::vector<std::pa
     body += "</table>";
     if (line.events.size() > kMostEvents)
         body += fmt::format("<p>And {} more, in review.json.</p>", line.events.size() - kMostEvents);
-    return html_page("Session: " + line.head.case_title, {},
+    return html_page("Session: " + line.head.case_title, verdict_of(line),
                      {{"Operator", line.head.operator_name.empty() ? "left out" : operator_text(line.head)},
                       {"Began", line.head.began_utc},
                       {"Room clock 0:00:00", utc_and_local_time(line.room_entered_utc)},

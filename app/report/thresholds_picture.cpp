@@ -7,6 +7,7 @@
 
 #include "app/report/slice_picture.h"
 #include "planning_io/types/error.h"
+#include "segmentation/skin_threshold.h"
 
 namespace planlight {
 namespace {
@@ -45,9 +46,10 @@ RgbImage thresholds_picture(const Volume& volume, const SkinSettings& settings, 
         for (const SliceKind kind : {SliceKind::sagittal, SliceKind::coronal, SliceKind::axial})
             put(slice_picture(volume, skin, {}, kind, middle, of_slice), column * kTile, kTitle + kTile * row++, sheet);
         cv::Mat canvas(sheet.height, sheet.width, CV_8UC3, sheet.pixels.data());
-        cv::putText(canvas, fmt::format("--threshold {:.3g}{}", factor * threshold, factor == 1.0 ? " (found)" : ""),
-                    {column++ * kTile + 12, 30}, cv::FONT_HERSHEY_SIMPLEX, 0.8, cv::Scalar(235, 235, 235), 2,
-                    cv::LINE_AA);
+        cv::putText(
+            canvas,
+            fmt::format("--threshold {}{}", threshold_text(factor * threshold), factor == 1.0 ? " (found)" : ""),
+            {column++ * kTile + 12, 30}, cv::FONT_HERSHEY_SIMPLEX, 0.8, cv::Scalar(235, 235, 235), 2, cv::LINE_AA);
     }
     return sheet;
 }

@@ -43,22 +43,27 @@ RecordedPlay::Exposure RecordedPlay::exposure(std::uint64_t number, Instant at) 
     return exposure;
 }
 
-/// Both cameras are given the same moment, whichever asks first.
-RecordedPlay::Exposure RecordedPlay::next_at_once(std::uint64_t after, Instant now) {
-    constexpr std::size_t kKept = 16;
+/// Both cameras are given the same moment, whichever asks first; neither gets the next before the other has this one.
+std::optional<RecordedPlay::Exposure> RecordedPlay::next_at_once(std::uint64_t after, Instant now) {
+    constexpr int kCameras = 2;
     const std::lock_guard lock(mutex_);
-    for (const Exposure& one : given_)
-        if (one.number == after + 1) return one;
-    const Instant length = frames_[after % frames_.size()].exposure;
-    Instant at = now + length / 2;
-    if (!given_.empty()) at = std::max(at, given_.back().at + std::chrono::microseconds(1));
-    given_.push_back(exposure(after + 1, at));
-    if (given_.size() > kKept) given_.erase(given_.begin());
-    return given_.back();
+    if (given_.number == after + 1) {
+        ++given_to_;
+        return given_;
+    }
+    if (given_.number > 0 && given_to_ < kCameras) return std::nullopt;
+    Instant at = now + frames_[after % frames_.size()].exposure / 2;
+    if (given_.number > 0) at = std::max(at, given_.at + std::chrono::microseconds(1));
+    given_ = exposure(after + 1, at);
+    given_to_ = 1;
+    return given_;
 }
 
 std::vector<RecordedPlay::Exposure> RecordedPlay::due(std::uint64_t after, Instant now, std::size_t most) {
-    if (pace_ == RecordedPace::fastest) return {next_at_once(after, now)};
+    if (pace_ == RecordedPace::fastest) {
+        const auto next = next_at_once(after, now);
+        return next ? std::vector<Exposure>{*next} : std::vector<Exposure>{};
+    }
     if (now < began_) return {};
     // All numbers up to this one's round are over; in that round it is looked.
     std::uint64_t last = static_cast<std::uint64_t>((now - began_) / round_) * frames_.size();

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "planning_io/types/time.h"
@@ -40,7 +41,9 @@ public:
                  std::shared_ptr<const RecordedLight> light = {});
 
     /// The exposures after number `after` that a camera has by `now`: at its own pace those that are over, of which the
-    /// newest `most`; at the fastest the next one, which begins now.
+    /// newest `most`; at the fastest the next one, which begins now, or none while the other camera has not asked for
+    /// the one before: a camera whose thread gets no processor for a while would else stay behind, and be in no pair
+    /// again.
     std::vector<Exposure> due(std::uint64_t after, Instant now, std::size_t most);
 
     RecordedPace pace() const { return pace_; }
@@ -50,14 +53,15 @@ public:
 private:
     Exposure exposure(std::uint64_t number, Instant at) const;
     Instant at_own_pace(std::uint64_t number) const;
-    Exposure next_at_once(std::uint64_t after, Instant now);
+    std::optional<Exposure> next_at_once(std::uint64_t after, Instant now);
 
     std::vector<RecordedFrame> frames_;
     RecordedPace pace_;
     Instant began_, round_;
     std::shared_ptr<const RecordedLight> light_;
     std::mutex mutex_;
-    std::vector<Exposure> given_;  ///< at the fastest pace: the last ones, for the camera that asks second
+    Exposure given_;    ///< at the fastest pace: the last one, for the camera that asks second; number 0: none yet
+    int given_to_ = 0;  ///< how many cameras have it
 };
 
 }  // namespace planlight

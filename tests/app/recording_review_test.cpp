@@ -8,6 +8,7 @@
 
 #include "app/live/review_desk.h"
 #include "app/recording/recording_head.h"
+#include "app/report/operation_report.h"
 #include "app/report/recorded_moments.h"
 #include "app/report/recording_review.h"
 #include "planning_io/files/safe_write.h"
@@ -102,6 +103,11 @@ TEST_F(RecordingReview, ShowsTheGatesColoursAndTheErrorsOverTime) {
     EXPECT_EQ(colours, 3);
     const std::string page = review_page(line, {{"x.png", "A picture <of> it"}});
     EXPECT_NE(page.find("A picture &lt;of&gt; it"), std::string::npos);
+    const auto of = [&](LightTrust trust) { return duration_text(seconds_of[static_cast<std::size_t>(trust)]); };
+    EXPECT_NE(page.find("aligned for " + of(LightTrust::aligned) + ", to be looked at for " + of(LightTrust::look) +
+                        ", dark for " + of(LightTrust::dark) + "."),
+              std::string::npos);
+    EXPECT_NE(page.find("0.90 mm beside the plan (95 % of it), 25.1 s after"), std::string::npos);
     const auto figures = nlohmann::json::parse(review_json(line));
     EXPECT_EQ(figures["frames_s"].size(), 30u);
     EXPECT_EQ(figures["stretches"].size(), line.stretches.size());

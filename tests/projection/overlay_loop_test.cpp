@@ -22,6 +22,7 @@ struct HandClock final : Clock {
 };
 
 struct PaperProjector final : Projector {
+    explicit PaperProjector(const Clock& c) : clock(c) {}
     int width() const override { return 1920; }
     int height() const override { return 1080; }
     Instant show(const RgbImage& picture, Instant valid_until) override {
@@ -29,9 +30,10 @@ struct PaperProjector final : Projector {
         lit = true;
         last = picture;
         until = valid_until;
-        return valid_until - 75ms + delay;
+        return clock.now() + delay;
     }
     void go_dark() noexcept override { lit = false; }
+    const Clock& clock;
     bool lit = true, broken = false;
     Instant delay = 25ms;  // from show to light
     RgbImage last;
@@ -75,7 +77,7 @@ protected:
     PlanDrawing drawing;
     RegistrationResult registration;
     HandClock clock;
-    PaperProjector projector;
+    PaperProjector projector{clock};
 };
 
 TEST_F(OverlayTest, AFreshGoodPoseIsLitAndExpires) {
@@ -86,6 +88,18 @@ TEST_F(OverlayTest, AFreshGoodPoseIsLitAndExpires) {
     EXPECT_EQ(projector.until, clock.time + 75ms);
     EXPECT_GT(s.counts.lit, 50u);
     EXPECT_LT((s.rig_from_ct.translation() - Vector3d(0, 0, 700)).norm(), 1e-12);
+}
+
+// Where the next picture comes soon, the last one goes so early that its darkness is seen in time.
+TEST_F(OverlayTest, APictureGivesWayToDarknessInTimeWherePicturesComeOften) {
+    for (const Instant period : {33ms, 40ms, 66ms}) {
+        OverlayLoop loop(projector, clock, renderer, drawing, registration);
+        for (int i = 0; i < 20; ++i) {
+            clock.time += period;
+            ASSERT_TRUE(loop.step(pose()).lit);
+        }
+        EXPECT_EQ(projector.until, clock.time + (period > 50ms ? 75ms : 65ms));
+    }
 }
 
 TEST_F(OverlayTest, DarkWithoutARegistration) {

@@ -5,6 +5,7 @@
 
 #include "planning_io/types/error.h"
 #include "segmentation/segment_skin.h"
+#include "segmentation/skin_threshold.h"
 #include "tests/segmentation/mesh_facts.h"
 #include "tests/segmentation/synthetic_scan.h"
 #include "tests/support/analytic_head.h"
@@ -62,6 +63,17 @@ TEST(SegmentSkin, FindsTheThresholdBetweenAirAndSoftTissue) {
     for (auto& v : stored.values) v = 2 * (v + 1024);
     stored.is_hu = false;
     EXPECT_NEAR(segment_skin(stored).threshold, 2 * (1024 - 480), 60);
+}
+
+// An MR of sixteen bits has thresholds of thousands.
+TEST(SegmentSkin, SaysAThresholdAsItIsTyped) {
+    EXPECT_EQ(threshold_text(12345.6), "12346");
+    EXPECT_EQ(threshold_text(1234), "1234");
+    EXPECT_EQ(threshold_text(-490.2), "-490");
+    EXPECT_EQ(threshold_text(99.97), "100");
+    EXPECT_EQ(threshold_text(-87.44), "-87.4");
+    EXPECT_EQ(threshold_text(0.21449), "0.214");
+    EXPECT_EQ(threshold_text(0), "0");
 }
 
 TEST(TriangulateSkin, LiesOnTheCrossingOfABareHead) {

@@ -2,8 +2,6 @@
 // server with two monitors: `watch_darkness FOLDER`, with PLANLIGHT the program (for its projector process) and ROUNDS
 // how often each fault is tried (default 3). The same executable, as `watch_darkness hold MONITOR`, is the program that
 // is stopped, killed, or made to hang while its light is on. Exit code 0 when every light was dark in 300 ms.
-#include <X11/Xlib.h>
-#include <X11/Xutil.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,7 +9,6 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
-#include <optional>
 #include <random>
 #include <thread>
 #include <vector>
@@ -20,6 +17,7 @@
 #include "projection/projector_process.h"
 #include "projection/projector_window.h"
 #include "root_window.h"
+#include "screen_pixel.h"
 
 namespace {
 
@@ -52,33 +50,6 @@ int hold(const std::string& monitor) {
         std::this_thread::sleep_for(4ms);
     }
 }
-
-/// What a person sees at one place of the screen.
-class Eye {
-public:
-    explicit Eye(const Monitor& monitor) : x_(monitor.x + monitor.width / 2), y_(monitor.y + monitor.height / 2) {}
-    ~Eye() { XCloseDisplay(display_); }
-    bool lit() const {
-        XImage* const image = XGetImage(display_, DefaultRootWindow(display_), x_, y_, 1, 1, AllPlanes, ZPixmap);
-        const bool lit = (XGetPixel(image, 0, 0) & 0xFFFFFF) != 0;
-        XDestroyImage(image);
-        return lit;
-    }
-    /// How long until it is dark; empty after `patience`.
-    std::optional<Instant> until_dark(Instant patience) const {
-        const SteadyClock clock;
-        const Instant start = clock.now();
-        while (lit()) {
-            if (clock.now() - start > patience) return std::nullopt;
-            std::this_thread::sleep_for(500us);
-        }
-        return clock.now() - start;
-    }
-
-private:
-    Display* display_ = XOpenDisplay(nullptr);
-    int x_, y_;
-};
 
 struct Holder {
     pid_t program = -1, projector = -1;
@@ -126,7 +97,7 @@ constexpr Fault kFaults[] = {
 };
 
 void watch(const char* self, const Monitor& monitor, int rounds) {
-    const Eye eye(monitor);
+    const test::ScreenPixel eye(monitor);
     std::minstd_rand random(1);
     std::uniform_int_distribution<int> delay_ms(0, 120);
     for (const Fault& fault : kFaults) {

@@ -146,6 +146,8 @@ constexpr const char* kSaying[] = {
     "registration/devices/gstreamer_camera.cpp",
     "registration/devices/recorded_camera.cpp",
     "registration/devices/recorded_projector.cpp",
+    "segmentation/skin_judgement.cpp",
+    "segmentation/series_doubts.cpp",
 };
 
 /// What these sources say is shown in the window, but for the texts that stand here with the reason.
@@ -171,7 +173,17 @@ const std::set<std::string> kNotShown{
     // What a camera of a room file does not take: the names of its standard, in a place of a name.
     "a gain of {}", "a question for its exposure", "a question for its region", "an exposure of {} ms",
     "continuous acquisition", "the exposure that it had, {:.2f} ms", "the gain that it had, {:.1f}",
-    "the pixel format ", "the region {} {} {} {}", "the trigger ", "{} frames a second"};
+    "the pixel format ", "the region {} {} {} {}", "the trigger ", "{} frames a second",
+    // Why a volume is refused, before there is a case.
+    "What was found is no human head: the largest ball within it has a radius of {:.0f} mm (a newborn's head holds one "
+    "of 45 mm)",
+    "What was found is no head: the largest ball within it has a radius of {:.0f} mm (a head holds one of 60 to 85 mm)",
+    "There is no scalp: only under {:.0f} % of the surface of the vault lies a layer of bone with soft tissue over it "
+    "(on heads 60 to 100 %); this is a stripped brain, a phantom or no head",
+    "There is no soft tissue over the bone ({:.1f} mm): this is a dry skull or a phantom",
+    "Give the CT or MR series of the whole head as the scanner made it; for a phantom or a dry skull use `planlight "
+    "prepare --phantom`.",
+    "The skin cannot be told from what surrounds it: ", "{}the {} ({:.0f} square cm)"};
 
 /// A fault of the program's own, not for a person at the trolley: "capture_scan: stripes of ...".
 bool of_a_function(const std::string& text) {
@@ -311,6 +323,44 @@ TEST_P(ShippedWords, SayWholeSentencesAsASessionPutsThemTogether) {
           "The skin was not checked: the markers were not seen: only 3 of 6 markers seen; 4 are needed; check it "
           "again.",
           "Right frontal, version 3 · series of 2012-09-14",
+          "Warning: Over 22 square cm (most at the forehead, the left side) what lies just under the surface is "
+          "lighter than skin and fat: hair, a strap, a cloth or a cover lies on the skin there. Look at the skin "
+          "in the report before you use it.",
+          "Warning: The volume ends within the head: it cuts off the face (31 square cm), the right side (9 square "
+          "cm); what lies there is no skin. Scan, match and draw elsewhere, or give a series that shows the whole "
+          "head.",
+          "Warning: At the left side the volume ends over 12 square cm within something that has no bone under it "
+          "nor round it: something lies on the head there (a cushion, wet hair, a blanket). Look at the skin in "
+          "the report before you use it.",
+          "Warning: The crown is low for a head 150 mm broad and 190 mm long (0.61; heads have 0.8 to 1.1): the "
+          "distance of the slices in the file may be wrong. Compare the voxel size in the file with what the "
+          "scanner was set to; convert the series again from DICOM.",
+          "Warning: Between two slices across head and feet, at 42 mm, the whole outline jumps: what follows is "
+          "shifted by 3.1 mm and turned by 1.2 degrees. The patient seems to have moved while the series was "
+          "taken, and the skin of one side of that place does not fit the other. Give a series in which the "
+          "patient lay still; look at the skin in the report.",
+          "Warning: Whether something lies on the skin (at one side, small things) could not be asked: too little "
+          "of the head is in the volume. Look at the skin in the report before you use it.",
+          "Warning: The skin is uncertain in places: 9 % of the outline moves by more than 3 mm when the threshold "
+          "is taken at 0.7 or 1.5 times what was found (1234). Try `planlight prepare --threshold 864` and 1851, "
+          "and compare the pictures of the report.",
+          "Warning: The greys of this CT are not quite HU, as a cone-beam CT's are: soft tissue lies at -210 and "
+          "not near 35. Bone was looked for at 120 and above. Look at the skin in the report before you use it.",
+          "Warning: the values of this CT are not HU; the skin threshold 512 was found from their histogram: look "
+          "at the skin before you use it",
+          "Warning: the file does not say whether it is CT or MR: taken for MR (its least value is 0, and the air "
+          "of a CT in HU near -1000)",
+          "Warning: of two large pieces in the volume the larger was taken for the phantom (1200 ml), and the "
+          "other left out (900 ml). Look at the skin: a couch may be the larger",
+          "Warning: not every name has room in the light, or can be lit. In its place stands: B1 is Borehole 1: "
+          "left, T1 is Way. Each item's code stands beside its name in the window, too",
+          "Warning: the plan is crowded: the names of 3 of 40 items find no free skin, and are not written there",
+          "Warning: left aside: 1 localizer picture of the series",
+          "Warning: left aside: 2 DICOM files that are damaged and do not say of which series: if a slice at the "
+          "end of this one is among them, the volume ends before it",
+          "Warning: its 41 slices lie 2.40 to 5.10 mm apart; they were laid onto an even grid of 80 with steps of "
+          "2.41 mm, linear between the cuts: where they are far apart the skin is coarser",
+          "Warning: skin.stl: at 12 edges three triangles or more meet",
           "Room 2 · 93e8e8b7 of 2026-03-14 · 1 cutting line, 4 boreholes, 1 trajectory",
           "Warning: Borehole 1: 12 % of it lies where the scan saw no skin; the skin there is taken to lie 0.4 mm "
           "inside that "
