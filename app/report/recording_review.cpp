@@ -79,7 +79,8 @@ PageVerdict verdict_of(const RecordingTimeLine& line) {
     const double off_mm = worst ? worst->off_mm : 0;
     if (line.damaged || line.damaged_pictures || off_mm > kOperationStop_mm)
         verdict.kind = PageVerdict::Kind::stop;
-    else if (!line.ended.empty() || off_mm > kOperationLook_mm || line.stretches.empty())
+    else if (!line.ended.empty() || off_mm > kOperationLook_mm ||
+             of(LightTrust::aligned) <= of(LightTrust::look) + of(LightTrust::dark))
         verdict.kind = PageVerdict::Kind::look;
     return verdict;
 }

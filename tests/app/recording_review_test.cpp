@@ -8,6 +8,7 @@
 
 #include "app/live/review_desk.h"
 #include "app/recording/recording_head.h"
+#include "app/report/html_page.h"
 #include "app/report/operation_report.h"
 #include "app/report/recorded_moments.h"
 #include "app/report/recording_review.h"
@@ -107,6 +108,7 @@ TEST_F(RecordingReview, ShowsTheGatesColoursAndTheErrorsOverTime) {
     EXPECT_NE(page.find("aligned for " + of(LightTrust::aligned) + ", to be looked at for " + of(LightTrust::look) +
                         ", dark for " + of(LightTrust::dark) + "."),
               std::string::npos);
+    EXPECT_NE(page.find(sign_of(PageVerdict::Kind::look)), std::string::npos) << "aligned for a third of the time only";
     EXPECT_NE(page.find("0.90 mm beside the plan (95 % of it), 25.1 s after"), std::string::npos);
     const auto figures = nlohmann::json::parse(review_json(line));
     EXPECT_EQ(figures["frames_s"].size(), 30u);
