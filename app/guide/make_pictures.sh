@@ -1,10 +1,11 @@
 #!/bin/bash
 # make_pictures.sh PLANLIGHT [FOLDER]: makes the pictures of this guide anew, as the program's own commands show them, in the simulated room
-# (FOLDER: where they are put; default: this guide). Needs xvfb-run, xdotool, ImageMagick, pdftoppm (of poppler-utils) and chromium; takes some minutes. Look at each
+# (FOLDER: where all of them are put; default: where they belong). Needs xvfb-run, xdotool, ImageMagick, pdftoppm (of poppler-utils) and chromium; takes some minutes. Look at each
 # before it is kept. `cameras.png` and `guided.png` are left by `tests/app/windows/two_monitors.sh` (cameras, calibrate_served_room).
 set -e
 here=$(cd "$(dirname "$0")" && pwd)
-program=$(realpath "$1") out=$(realpath "${2:-$here}")
+program=$(realpath "$1") out=$here example=$here/../example windows=$here/../windows
+[ -z "$2" ] || { mkdir -p "$2" && out=$(realpath "$2") && example=$out && windows=$out; }
 volume=/usr/share/doc/invesalius-examples/examples/Cranium.inv3
 plan=$here/../example/frontal_defect.mrk.json
 work=$(mktemp -d)
@@ -47,11 +48,11 @@ exit 0
 END
 screen bash session.sh "$program" "$volume"
 for name in scanning match verify aligned light; do small $name.png "$out/session-$name.png"; done
-small aligned.png "$out/../example/demo.png"
-small landmarks.png "$out/../windows/landmarks.png"
+small aligned.png "$example/demo.png"
+small landmarks.png "$windows/landmarks.png"
 screen "$program" review recordings/*.plrec --case case --show --at 4 --picture review.png
 small review.png "$out/session-review.png"
-"$program" review recordings/*.plrec --case case --at 20 --out review
+"$program" review recordings/*.plrec --case case --at 4 --out review
 chromium --headless --no-sandbox --hide-scrollbars --window-size=1000,1500 --screenshot=review-page.png "file://$work/review/index.html"
 small review-page.png "$out/review-page.png"
 "$program" report recordings/*.plrec --out operation.html --pdf operation.pdf

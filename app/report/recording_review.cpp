@@ -122,7 +122,7 @@ std::string review_page(const RecordingTimeLine& line, const std::vector<std::pa
         body += fmt::format("<p>And {} more, in review.json.</p>", line.events.size() - kMostEvents);
     return html_page("Session: " + line.head.case_title, verdict_of(line),
                      {{"Operator", line.head.operator_name.empty() ? "left out" : operator_text(line.head)},
-                      {"Began", line.head.began_utc},
+                      {"Began", utc_and_local_time(line.head.began_utc)},
                       {"Room clock 0:00:00", utc_and_local_time(line.room_entered_utc)},
                       {"Lasted", duration_text(line.lasted_s)},
                       {"Frames kept", std::to_string(line.frames_s.size())}},
