@@ -33,7 +33,7 @@ std::string local_time(const std::string& utc) {
     return fmt::format("{:%Y-%m-%d %H:%M:%S} {}", *local, local->tm_gmtoff == 0 ? "UTC" : zone_of(*local));
 }
 
-std::string local_time_of_day(const std::string& utc, const std::string& now_utc) {
+std::string short_local_time(const std::string& utc, const std::string& now_utc) {
     const auto local = here(utc), now = here(now_utc);
     if (!local) return {};
     const bool same_day = now && local->tm_year == now->tm_year && local->tm_yday == now->tm_yday;

@@ -11,7 +11,7 @@ std::string local_time(const std::string& utc);
 
 /// The same without its seconds, and without its day where that is today's here: "02:00 (UTC+05:30)". `now_utc`: the
 /// moment at which it is said.
-std::string local_time_of_day(const std::string& utc, const std::string& now_utc);
+std::string short_local_time(const std::string& utc, const std::string& now_utc);
 
 /// Both clocks, for who compares with another system: "2026-03-14 20:30:05 UTC; here 2026-03-15 02:00:05 (UTC+05:30)".
 std::string utc_and_local_time(const std::string& utc);

@@ -15,7 +15,7 @@ namespace {
 
 /// Of a match, as the clock on the wall had it; with its day where that is not today.
 std::string time_of_day(const std::string& utc) {
-    const std::string here = local_time_of_day(utc, today());
+    const std::string here = short_local_time(utc, today());
     return here.empty() ? "the session before" : here;
 }
 

@@ -23,6 +23,22 @@ void write_recording(const fs::path& file) {
         << chunk_bytes({chunk_types::kDone, Instant(1), "{}"}, 1);
 }
 
+/// A frame a second, from the first on.
+void write_recording_of_frames(const fs::path& file, std::uint64_t frames, bool anonymous = false) {
+    RecordingHead head;
+    head.case_code = "1a2b";
+    head.anonymous = anonymous;
+    std::ofstream out(file, std::ios::binary);
+    out << recording_header() << chunk_bytes({chunk_types::kHead, Instant(0), text_of(head)}, 0)
+        << chunk_bytes({chunk_types::kRoom, Instant(0), "{}"}, 1);
+    const GrayImage picture(64, 48, 90);
+    for (std::uint64_t i = 1; i <= frames; ++i) {
+        const Instant at = std::chrono::seconds(i);
+        out << chunk_bytes({chunk_types::kFrame, at, pack_frame({picture, picture, at, {}, i})}, i + 1);
+    }
+    out << chunk_bytes({chunk_types::kDone, std::chrono::seconds(frames), "{}"}, frames + 2);
+}
+
 TEST(ReportCommand, NeverTakesTheRecordingsPlace) {
     const TemporaryFolder folder;
     const fs::path file = folder.path() / "a.plrec", odd = folder.path() / "odd.json";
@@ -87,15 +103,7 @@ TEST(ReviewCommand, WritesOnlyIntoANewFolderOrOneOfItsOwn) {
 
 TEST(ReviewCommand, OfAMomentOfAnAnonymousRecordingSaysThatNoCaseWouldHelp) {
     const TemporaryFolder folder;
-    RecordingHead head;
-    head.case_code = "1a2b";
-    head.anonymous = true;
-    const StereoFrame frame{GrayImage(64, 48, 90), GrayImage(64, 48, 90), std::chrono::seconds(1), {}, 1};
-    std::ofstream(folder.path() / "a.plrec", std::ios::binary)
-        << recording_header() << chunk_bytes({chunk_types::kHead, Instant(0), text_of(head)}, 0)
-        << chunk_bytes({chunk_types::kRoom, Instant(0), "{}"}, 1)
-        << chunk_bytes({chunk_types::kFrame, frame.at, pack_frame(frame)}, 2)
-        << chunk_bytes({chunk_types::kDone, frame.at, "{}"}, 3);
+    write_recording_of_frames(folder.path() / "a.plrec", 1, true);
     const CommandRun run = run_planlight("review a.plrec --at 1", folder.path());
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_NE(run.err.find("An anonymous recording does not keep where the plan lies."), std::string::npos) << run.err;
@@ -106,19 +114,7 @@ TEST(ReviewCommand, OfAMomentOfAnAnonymousRecordingSaysThatNoCaseWouldHelp) {
 
 TEST(ReviewCommand, AClipIsAPictureForEachFrameThatWasKeptInBetweenWithItsTime) {
     const TemporaryFolder folder;
-    RecordingHead head;
-    head.case_code = "1a2b";
-    {
-        std::ofstream out(folder.path() / "a.plrec", std::ios::binary);
-        out << recording_header() << chunk_bytes({chunk_types::kHead, Instant(0), text_of(head)}, 0)
-            << chunk_bytes({chunk_types::kRoom, Instant(0), "{}"}, 1);
-        for (std::uint64_t i = 1; i <= 4; ++i) {
-            const Instant at = std::chrono::seconds(i);
-            out << chunk_bytes({chunk_types::kFrame, at, pack_frame({GrayImage(64, 48), GrayImage(64, 48), at, {}, i})},
-                               i + 1);
-        }
-        out << chunk_bytes({chunk_types::kDone, std::chrono::seconds(4), "{}"}, 6);
-    }
+    write_recording_of_frames(folder.path() / "a.plrec", 4);
     const auto clip = folder.path() / "a-review" / "clip";
     for (int time = 0; time < 2; ++time) {
         const CommandRun run = run_planlight("review a.plrec --clip 2 3.5", folder.path());
@@ -137,14 +133,7 @@ TEST(ReviewCommand, PageMomentAndClipAreForTheirOwnerAloneWhateverTheUmask) {
     for (const char* umask : {"umask 0022; ", "umask 0077; ", "umask 0; "}) {
         const TemporaryFolder folder;
         fs::permissions(folder.path(), fs::perms(0755));
-        RecordingHead head;
-        head.case_code = "1a2b";
-        const StereoFrame frame{GrayImage(64, 48, 90), GrayImage(64, 48, 90), std::chrono::seconds(1), {}, 1};
-        std::ofstream(folder.path() / "a.plrec", std::ios::binary)
-            << recording_header() << chunk_bytes({chunk_types::kHead, Instant(0), text_of(head)}, 0)
-            << chunk_bytes({chunk_types::kRoom, Instant(0), "{}"}, 1)
-            << chunk_bytes({chunk_types::kFrame, frame.at, pack_frame(frame)}, 2)
-            << chunk_bytes({chunk_types::kDone, frame.at, "{}"}, 3);
+        write_recording_of_frames(folder.path() / "a.plrec", 1);
         const CommandRun run =
             run_planlight("review a.plrec --at 1 --clip 0 2 --out deep/review", folder.path(), umask);
         ASSERT_EQ(run.exit_code, 0) << run.err;

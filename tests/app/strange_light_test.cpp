@@ -87,6 +87,15 @@ protected:
     /// Near the middle of the example's plan, on the skin.
     static Vector3d middle() { return case_->plan.boreholes.front().position_in_ct; }
 
+    static Plan biopsy_straight_in() {
+        Plan plan;
+        Trajectory way;
+        way.name = "Biopsy";
+        way.entry_in_ct = middle();
+        way.target_in_ct = middle() - 60 * CaseDrawing(*case_).skin.nearest(middle()).normal_in_ct;
+        plan.trajectories = {way};
+        return plan;
+    }
     /// Six holes of 2.4 mm in two rows, 7 mm apart, with short names.
     static Plan screws_of_a_plate() {
         const CaseDrawing drawing(*case_);
@@ -170,13 +179,7 @@ TEST_F(StrangeLight, OneSmallCircle) {
 }
 
 TEST_F(StrangeLight, OneBiopsyStraightIn) {
-    Plan plan;
-    Trajectory way;
-    way.name = "Biopsy";
-    way.entry_in_ct = middle();
-    way.target_in_ct = middle() - 60 * CaseDrawing(*case_).skin.nearest(middle()).normal_in_ct;
-    plan.trajectories = {way};
-    expect_honest("one biopsy", plan);
+    expect_honest("one biopsy", biopsy_straight_in());
     EXPECT_TRUE(green_);
 }
 
@@ -309,13 +312,7 @@ TEST_F(FarLight, OfThePlateOfScrewsGoesDark) {
 }
 
 TEST_F(FarLight, OfOneBiopsyGoesDark) {
-    Plan plan;
-    Trajectory way;
-    way.name = "Biopsy";
-    way.entry_in_ct = middle();
-    way.target_in_ct = middle() - 60 * CaseDrawing(*case_).skin.nearest(middle()).normal_in_ct;
-    plan.trajectories = {way};
-    expect_dark("one biopsy", plan);
+    expect_dark("one biopsy", biopsy_straight_in());
 }
 
 /// A minute each: not in the short run.
