@@ -44,13 +44,21 @@ TEST(GstreamerCamera, APictureThatIsSentAgainIsNoFrame) {
     settings.pipeline =
         "videotestsrc is-live=true pattern=snow ! video/x-raw,framerate=10/1,width=64,height=48 ! "
         "videorate ! video/x-raw,framerate=50/1";
+    settings.silence_allowed = milliseconds(20000);  // a busy machine is no fault here
     GstreamerCamera camera(settings, bell, clock);
+    // GStreamer's sink drops what waits too long, so how many of the five come is the machine's affair; that none of
+    // them is handed out twice is ours.
+    std::vector<CameraFrame> frames;
     const Instant until = clock.now() + milliseconds(20000);
-    while (camera.frames().counts().repeated < 20 && clock.now() < until) std::this_thread::sleep_for(milliseconds(5));
-    const CameraCounts counts = camera.frames().counts();
-    EXPECT_GE(counts.repeated, 20u);
-    EXPECT_LT(counts.received, counts.repeated) << "four of five are the one before";
-    EXPECT_FALSE(camera.frames().fault()) << "new ones come in between";
+    while ((camera.frames().counts().repeated < 20 || frames.size() < 5) && clock.now() < until) {
+        for (CameraFrame& frame : camera.frames().take_all()) frames.push_back(std::move(frame));
+        std::this_thread::sleep_for(milliseconds(5));
+    }
+    EXPECT_GE(camera.frames().counts().repeated, 20u);
+    ASSERT_GE(frames.size(), 5u) << "new ones come in between";
+    for (std::size_t i = 1; i < frames.size(); ++i)
+        EXPECT_NE(frames[i].picture.pixels, frames[i - 1].picture.pixels) << "frame " << i;
+    EXPECT_FALSE(camera.frames().fault());
 }
 
 TEST(GstreamerCamera, APictureThatIsSentAgainAndAgainIsAFault) {
