@@ -92,6 +92,7 @@ void name_rows(const PlanDrawing& drawing, std::vector<PlanRow>& rows) {
         const std::string label = item.label.empty() ? item.name : item.label;
         const std::string code = item.lit_by_code ? item.code + "  " : "";
         rows[i].name = code + label;
+        rows[i].bare = !item.labelled;
         // The depth is the last of the figures beside the name.
         const std::size_t last = label.rfind("  ");
         const bool figures = label.size() > item.name.size() && last != std::string::npos && last >= item.name.size();
@@ -105,6 +106,19 @@ std::vector<std::string> unlit_warnings(const PlanDrawing& drawing) {
         if (!item.unlit_warning.empty())
             sentences.push_back(
                 fmt::format("{}: \"{}\" has no room in the light beside it", item.name, item.unlit_warning));
+    return sentences;
+}
+
+std::vector<std::string> evidence_of_labels(const PlanDrawing& drawing) {
+    std::vector<std::string> sentences;
+    const auto bare =
+        std::count_if(drawing.items.begin(), drawing.items.end(), [](const DrawnItem& item) { return !item.labelled; });
+    if (bare > 0)
+        sentences.push_back(fmt::format(
+            "The plan is crowded: {} of {} items have no name beside their light. Light one alone to see which it is.",
+            bare, drawing.items.size()));
+    const auto unlit = unlit_warnings(drawing);
+    sentences.insert(sentences.end(), unlit.begin(), unlit.end());
     return sentences;
 }
 

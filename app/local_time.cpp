@@ -10,14 +10,19 @@
 namespace planlight {
 namespace {
 
-/// The moment here, by `localtime_r`; empty where the text is none.
-std::optional<std::tm> here(const std::string& utc) {
+/// Empty where the text is none.
+std::optional<std::time_t> moment_of(const std::string& utc) {
     std::tm parts{};
     const char* const end = strptime(utc.c_str(), "%Y-%m-%dT%H:%M:%S", &parts);
     if (end == nullptr || std::string(end) != "Z") return std::nullopt;
-    const std::time_t moment = timegm(&parts);
+    return timegm(&parts);
+}
+
+/// The moment here; empty where the text is none.
+std::optional<std::tm> here(const std::string& utc) {
+    const auto moment = moment_of(utc);
     std::tm local{};
-    return localtime_r(&moment, &local) == nullptr ? std::nullopt : std::optional(local);
+    return !moment || localtime_r(&*moment, &local) == nullptr ? std::nullopt : std::optional(local);
 }
 
 std::string zone_of(const std::tm& local) {
@@ -44,7 +49,7 @@ std::string short_local_time(const std::string& utc, const std::string& now_utc)
 std::string utc_and_local_time(const std::string& utc) {
     const auto local = here(utc);
     if (!local) return {};
-    const std::string of_utc = utc.substr(0, 10) + " " + utc.substr(11, 8) + " UTC";
+    const std::string of_utc = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(*moment_of(utc)));
     return local->tm_gmtoff == 0 ? of_utc : of_utc + "; here " + local_time(utc);
 }
 

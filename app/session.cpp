@@ -217,6 +217,7 @@ void Session::start_overlay() {
         std::make_unique<OverlayLoop>(projector_, clock_, *renderer_, lit_drawing(), *registration_, settings_.overlay);
     if (confirmed_) overlay_->set_operator_confirmed(true);
     overlay_->set_found_delay(found_delay_);
+    overlay_->set_brightness(brightness_.share());
     const auto looked_at = lit_landmark_ ? lit_landmark_ : item_of_moment_;
     const bool others_lit = !lit_landmark_ && settings_.overlay.render.others > 0;
     checker_.emplace(looked_at ? lit_with(lit_drawing(), *looked_at, others_lit) : lit_drawing(), skin_of_light(), rig_,
@@ -265,6 +266,7 @@ Session::Update Session::make_update() {
     if (!update.overlay.lit && !update.camera_doubt.empty()) update.overlay.reason += "; " + update.camera_doubt;
     const auto checking_began = std::chrono::steady_clock::now();
     update.light = look_at_light(update);
+    if (update.light) overlay_->set_brightness(brightness_.look(*update.light));
     watch_light(update);
     update.times.check_s = elapsed_s(checking_began);
     note_shown(update.overlay);

@@ -13,6 +13,7 @@
 #include "planning_io/types/registration_result.h"
 #include "planning_io/types/rig_calibration.h"
 #include "projection/check_light.h"
+#include "projection/light_brightness.h"
 #include "projection/light_watch.h"
 #include "projection/overlay_loop.h"
 #include "registration/matching/register_with_landmarks.h"
@@ -243,6 +244,7 @@ private:
     std::optional<LightChecker> checker_;
     std::optional<LightWatch> watch_;
     std::optional<PictureJumps> jumps_;
+    LightBrightness brightness_;
     std::vector<ShownPicture> shown_;
     Instant found_delay_{};
     Instant seen_until_{};                  ///< end of the last exposure that was used

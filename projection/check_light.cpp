@@ -151,7 +151,9 @@ struct LightChecker::Parts {
     std::vector<Sight> sights;  ///< of the segments, then of the patches
     std::size_t turn = 0;
     int frame = 0;
-    std::optional<RigidTransform> last;
+    bool nothing_far = false,
+         passed_over = false;  ///< by the last search of all the light as one; now it is not searched
+    std::optional<RigidTransform> last{};
 
     Sight sight_of(const StrokeSegment& segment, const RigidTransform& rig_from_ct) const;
     void look_around(const RigidTransform& rig_from_ct);
@@ -212,7 +214,7 @@ std::optional<double> LightChecker::Parts::far_light(const RigidTransform& rig_f
 
 LightChecker::LightChecker(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,
                            const CheckLightSettings& settings, std::optional<std::size_t> only_item)
-    : parts_(new Parts{skin, rig, settings, {}, {}, segments_of(drawing, settings), {}, {}, 0, 0, {}}) {
+    : parts_(new Parts{skin, rig, settings, {}, {}, segments_of(drawing, settings), {}, {}}) {
     parts_->patches = patches_of(drawing, skin, parts_->segments, settings, only_item);
     parts_->apart = places_of_items(drawing);
     if (only_item) {
@@ -256,8 +258,13 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
     sum_up_items(check);
     sum_up(check);
     constexpr double kMostSeen = 0.8, kAside_mm = 1;  // else light is where it was looked for
-    if (p.settings.far_too && check.expected > 0 && (check.seen_share() < kMostSeen || check.off_mm > kAside_mm))
+    const bool missed = check.expected > 0 && (check.seen_share() < kMostSeen || check.off_mm > kAside_mm);
+    // As long as nothing is found, every second look: it costs more than the rest.
+    p.passed_over = p.settings.far_too && missed && p.nothing_far && !p.passed_over;
+    if (p.settings.far_too && missed && !p.passed_over) {
         check.far_mm = p.far_light(rig_from_ct, frame);
+        p.nothing_far = !check.far_mm;
+    }
     return check;
 }
 

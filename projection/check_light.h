@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -74,9 +75,12 @@ struct LightCheck {
     /// True where the segments that were seen tell the light's place in two directions along the skin. Straight lines
     /// side by side do not: along itself such light could lie anywhere.
     bool told_whole = false;
-    /// All light as one was found so far beside its place, mm, where it is beyond `search_mm` (`find_far_light`). Not
-    /// looked for while most of the light is seen near its place.
+    /// All light as one was found so far beside its place, mm, beyond 2 mm (`find_far_light`). Looked for where under
+    /// 80 % of the stretches are seen near their place or 95 % of the light lie beyond 1 mm there; every second time
+    /// only, as long as nothing is found. Strokes that are seen near their place then are others, or no light.
     std::optional<double> far_mm;
+    /// How far the light lies beside the plan, as far as it is known.
+    double light_off_mm() const { return far_mm ? std::max(*far_mm, off_mm) : off_mm; }
     double seen_share() const { return expected == 0 ? 0 : static_cast<double>(seen) / expected; }
 };
 

@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "planning_io/types/statistics.h"
-#include "projection/bilinear.h"
 #include "projection/biquadratic.h"
 
 namespace planlight {
@@ -92,17 +92,49 @@ struct Stretch {
     bool one_side = false;
 };
 
-/// The light across the stroke's direction, grey: the stroke's place less the skin to both sides of it.
-std::optional<double> ridge(const Stretch& stretch, std::size_t camera, const GrayImage& picture, const Vector2d& at) {
-    double sum = 0;
+/// The shifts of one row of a disc, from left to right, in reaches.
+struct ShiftRow {
+    double v = 0, first_u = 0, step = 0;
+    std::size_t from = 0, count = 0;  ///< among all shifts
+};
+
+constexpr double kOutside = std::numeric_limits<double>::quiet_NaN();
+
+/// As `bilinear`, NaN outside of the picture: asked some hundred thousand times a look.
+double grey_at(const GrayImage& picture, double x, double y) {
+    if (!(x >= 0 && y >= 0 && x < picture.width - 1 && y < picture.height - 1)) return kOutside;
+    const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
+    const double u = x - static_cast<double>(i), v = y - static_cast<double>(j);
+    const std::uint8_t* at = picture.pixels.data() + j * static_cast<std::size_t>(picture.width) + i;
+    const std::uint8_t* below = at + picture.width;
+    return (1 - v) * ((1 - u) * at[0] + u * at[1]) + v * ((1 - u) * below[0] + u * below[1]);
+}
+
+/// The light across the stroke's direction at each shift, grey: the stroke's place less the skin to both sides of it.
+/// NaN where a part of it lies outside of the picture.
+void find_ridges(const Stretch& stretch, std::size_t camera, const GrayImage& picture,
+                 const std::vector<ShiftRow>& rows, std::vector<double>& greys) {
+    std::fill(greys.begin(), greys.end(), 0);
     for (const ShiftedPlace& place : stretch.places) {
-        const Vector2d pixel = biquadratic(place.pixel[camera], at.x(), at.y());
-        const auto middle = bilinear(picture, pixel), left = bilinear(picture, pixel - place.aside_px[camera]),
-                   right = bilinear(picture, pixel + place.aside_px[camera]);
-        if (!middle || !left || !right) return std::nullopt;
-        sum += *middle - (stretch.one_side ? *right : std::max(*left, *right));
+        const Vector2d& aside = place.aside_px[camera];
+        for (const ShiftRow& row : rows) {
+            // Along a row the quadratic through the stencil is one of u alone.
+            const Vector2d low = biquadratic(place.pixel[camera], -1, row.v),
+                           middle = biquadratic(place.pixel[camera], 0, row.v),
+                           high = biquadratic(place.pixel[camera], 1, row.v);
+            const Vector2d slope = (high - low) / 2, bend = (high + low) / 2 - middle;
+            for (std::size_t k = 0; k < row.count; ++k) {
+                const double u = row.first_u + static_cast<double>(k) * row.step;
+                const double x = middle.x() + u * (slope.x() + u * bend.x()),
+                             y = middle.y() + u * (slope.y() + u * bend.y());
+                const double left = grey_at(picture, x - aside.x(), y - aside.y()),
+                             right = grey_at(picture, x + aside.x(), y + aside.y());
+                const double beside = stretch.one_side || left < right ? right : left;
+                greys[row.from + k] += grey_at(picture, x, y) - beside + 0 * left;  // NaN where one is
+            }
+        }
     }
-    return sum / static_cast<double>(stretch.places.size());
+    for (double& grey : greys) grey /= static_cast<double>(stretch.places.size());
 }
 
 /// By shift: the share of a camera's stretches whose light stands out there, and by how much, capped.
@@ -112,26 +144,26 @@ struct Seen {
 };
 
 Seen look(const std::vector<Stretch>& stretches, std::size_t camera, const GrayImage& picture,
-          const std::vector<Vector2d>& shifts, const FarLightSettings& settings) {
+          const std::vector<ShiftRow>& rows, const FarLightSettings& settings) {
     constexpr double kMostSigmas = 8, kLeastNoise_grey = 0.4;
+    const std::size_t shifts = rows.back().from + rows.back().count;
     Seen seen;
-    seen.share.assign(shifts.size(), 0);
-    seen.score.assign(shifts.size(), 0);
-    std::vector<double> greys(shifts.size());
+    seen.share.assign(shifts, 0);
+    seen.score.assign(shifts, 0);
+    std::vector<double> greys(shifts);
     for (const Stretch& stretch : stretches) {
         if (!stretch.seen[camera]) continue;
+        find_ridges(stretch, camera, picture, rows, greys);
         std::vector<double> inside;
-        for (std::size_t k = 0; k < shifts.size(); ++k) {
-            const auto grey = ridge(stretch, camera, picture, shifts[k]);
-            greys[k] = grey.value_or(0);
-            if (grey) inside.push_back(*grey);
-        }
-        if (2 * inside.size() < shifts.size()) continue;
+        for (const double grey : greys)
+            if (!std::isnan(grey)) inside.push_back(grey);
+        if (2 * inside.size() < shifts) continue;
         ++seen.stretches;
         const double usual = median(inside);
         for (double& grey : inside) grey = std::abs(grey - usual);
         const double noise = std::max(1.4826 * median(std::move(inside)), kLeastNoise_grey);
-        for (std::size_t k = 0; k < shifts.size(); ++k) {
+        for (std::size_t k = 0; k < shifts; ++k) {
+            if (std::isnan(greys[k])) continue;  // what no camera sees speaks for no shift
             const double sigmas = (greys[k] - usual) / noise;
             seen.score[k] += std::clamp(sigmas, 0.0, kMostSigmas);
             if (sigmas >= settings.least_sigmas && greys[k] >= settings.least_grey) seen.share[k] += 1;
@@ -159,13 +191,18 @@ std::vector<Stretch> stretches_of(const std::vector<SightedSegment>& segments, c
 }
 
 /// A disc of shifts, in reaches.
-std::vector<Vector2d> disc(double step) {
-    std::vector<Vector2d> shifts;
+std::vector<ShiftRow> disc(double step) {
+    std::vector<ShiftRow> rows;
+    std::size_t shifts = 0;
     const int n = static_cast<int>(1 / step);
-    for (int y = -n; y <= n; ++y)
-        for (int x = -n; x <= n; ++x)
-            if (Vector2d(x, y).norm() * step <= 1) shifts.push_back(step * Vector2d(x, y));
-    return shifts;
+    for (int y = -n; y <= n; ++y) {
+        int half = n;
+        while (half >= 0 && Vector2d(half, y).norm() * step > 1) --half;
+        if (half < 0) continue;
+        rows.push_back({step * y, -step * half, step, shifts, static_cast<std::size_t>(2 * half + 1)});
+        shifts += rows.back().count;
+    }
+    return rows;
 }
 
 }  // namespace
@@ -177,11 +214,15 @@ std::optional<double> find_far_light(const std::vector<SightedSegment>& segments
     Shifts follow(skin, rig, rig_from_ct, settings.reach_mm);
     follow.at_depth_of(segments);
     const std::vector<Stretch> stretches = stretches_of(segments, follow, settings.most_segments);
-    const std::vector<Vector2d> shifts = disc(settings.step_mm / settings.reach_mm);
-    const std::array<Seen, 2> seen{look(stretches, 0, frame.left, shifts, settings),
-                                   look(stretches, 1, frame.right, shifts, settings)};
+    const std::vector<ShiftRow> rows = disc(settings.step_mm / settings.reach_mm);
+    const std::array<Seen, 2> seen{look(stretches, 0, frame.left, rows, settings),
+                                   look(stretches, 1, frame.right, rows, settings)};
     for (const Seen& camera : seen)
         if (camera.stretches < settings.least_segments) return std::nullopt;
+    std::vector<Vector2d> shifts;
+    for (const ShiftRow& row : rows)
+        for (std::size_t k = 0; k < row.count; ++k)
+            shifts.emplace_back(row.first_u + static_cast<double>(k) * row.step, row.v);
 
     const auto off_mm = [&](const Vector2d& shift) {
         std::vector<double> off;
@@ -192,17 +233,19 @@ std::optional<double> find_far_light(const std::vector<SightedSegment>& segments
         return median(std::move(off));
     };
     // What both cameras see: the worse of the two, so that neither's own lines make a shift.
-    std::vector<double> score, off;
-    for (std::size_t k = 0; k < shifts.size(); ++k) {
-        score.push_back(std::min(seen[0].score[k], seen[1].score[k]));
-        off.push_back(off_mm(shifts[k]));
-    }
+    std::vector<double> score;
+    for (std::size_t k = 0; k < shifts.size(); ++k) score.push_back(std::min(seen[0].score[k], seen[1].score[k]));
     constexpr double kAsGood = 0.95;
     const double best = *std::max_element(score.begin(), score.end());
     std::size_t at = shifts.size();
-    for (std::size_t k = 0; k < shifts.size(); ++k)
-        if (score[k] >= kAsGood * best && (at == shifts.size() || off[k] < off[at])) at = k;
-    if (off[at] <= settings.near_mm || score[at] < settings.least_score) return std::nullopt;
+    double off_at = 0;
+    if (best < settings.least_score) return std::nullopt;
+    for (std::size_t k = 0; k < shifts.size(); ++k) {
+        if (score[k] < kAsGood * best) continue;
+        const double off = off_mm(shifts[k]);
+        if (at == shifts.size() || off < off_at) at = k, off_at = off;
+    }
+    if (off_at <= settings.near_mm || score[at] < settings.least_score) return std::nullopt;
     for (std::size_t k = 0; k < shifts.size(); ++k) {
         const bool another = settings.reach_mm * (shifts[k] - shifts[at]).norm() > settings.near_mm;
         if (another && score[k] < kAsGood * best && score[at] < settings.least_score_more * score[k])
@@ -212,7 +255,7 @@ std::optional<double> find_far_light(const std::vector<SightedSegment>& segments
         if (camera.share[at] < settings.least_share ||
             camera.share[at] < median(camera.share) + settings.least_share_more)
             return std::nullopt;
-    return off[at];
+    return off_at;
 }
 
 }  // namespace planlight

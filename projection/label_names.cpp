@@ -99,6 +99,9 @@ std::vector<LitName> lit_names(const std::vector<std::string>& names, double tex
         lit[i] = {shorter[i], {}, codes[i]};
         if (!lacks[i].empty())
             lit[i].warning = cannot_be_drawn(names[i], lacks[i], codes[i]);
+        else if (names.size() > 1 && seen_of(shorter[i]).empty())
+            lit[i].warning =
+                fmt::format("An item of the plan has no name; {}. Give each item a name.", in_its_place(codes[i]));
         else if (!shorter[i].empty() && count[seen_of(shorter[i])] > 1)
             lit[i].warning =
                 same_as_another(names[i], shorter[i], codes[i], std::count(names.begin(), names.end(), names[i]) > 1);

@@ -170,9 +170,9 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
 LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& causes) const {
     Ruling ruling;
     ruling.ask_to_verify = !verified_;
-    if (last_ && last_->seen > 0) {
-        ruling.off_mm = last_->off_mm;
-        ruling.sigma_mm = last_->sigma_mm;
+    if (last_ && (last_->seen > 0 || last_->far_mm)) {
+        ruling.off_mm = last_->light_off_mm();
+        if (!last_->far_mm) ruling.sigma_mm = last_->sigma_mm;
     }
     if (stopped_) {
         ruling.stop = true;

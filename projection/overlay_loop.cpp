@@ -173,6 +173,10 @@ void OverlayLoop::set_found_delay(Instant later) {
     parts_->found_delay = later;
 }
 
+void OverlayLoop::set_brightness(double share) {
+    parts_->settings.render.brightness = share;
+}
+
 Instant OverlayLoop::light_delay() const {
     return parts_->light_delay();
 }

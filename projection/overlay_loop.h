@@ -60,6 +60,9 @@ public:
     /// Light was found to come so much later than the projector promises; negative: earlier.
     void set_found_delay(Instant later);
 
+    /// Share of the projector's light from the next step on (`RenderSettings::brightness`).
+    void set_brightness(double share);
+
     /// From the beginning of a step to light, as the last pictures tell it, with what was found.
     Instant light_delay() const;
 

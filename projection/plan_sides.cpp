@@ -79,8 +79,8 @@ const SideWords& words_for(Side side) {
          U"esquerda", U"esquerdo", U"vänster",  U"vänstra", U"venstre", U"lewy",      U"lewa",      U"lewe",
          U"lewej",    U"levý",     U"levá",     U"levé",    U"vlevo",   U"слева",     U"влево",     U"налево",
          U"лев",      U"зліва",    U"يسار",     U"أيسر",    U"الأيسر",  U"اليسرى",    U"يسرى"},
-        {U"l"},
-        {U"li", U"lt", U"sin", U"sx", U"sol"},
+        {U"l", U"lt"},
+        {U"li", U"sin", U"sx", U"sol"},
         {U"лев", U"лів"},
         {U"左", U"왼쪽", U"좌측"}};
     static const SideWords kRight{
@@ -123,11 +123,16 @@ bool names(const std::vector<std::u32string>& words, Side side) {
     return false;
 }
 
+/// "Rt frontal": right; "RT plan" is of radiotherapy.
+bool begins_with_rt(const std::string& name) {
+    return name.starts_with("Rt ") || name.starts_with("Rt.") || name.starts_with("rt ") || name.starts_with("rt.");
+}
+
 }  // namespace
 
 std::optional<Side> side_named(const std::string& name) {
     const auto words = words_of(name);
-    const bool left = names(words, Side::left), right = names(words, Side::right);
+    const bool left = names(words, Side::left), right = names(words, Side::right) || begins_with_rt(name);
     if (left == right) return std::nullopt;
     return left ? Side::left : Side::right;
 }

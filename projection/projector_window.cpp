@@ -14,6 +14,7 @@
 #include "projection/glfw_session.h"
 #include "projection/monitor_lock.h"
 #include "projection/picture_thread.h"
+#include "projection/refuse_input.h"
 
 namespace planlight {
 namespace {
@@ -90,6 +91,7 @@ GLFWwindow* hidden_window(const Monitor& monitor) {
         throw DeviceError("Projector window", "it could not be opened (" + last_window_error() + ")",
                           "Install an OpenGL 3.3 driver, or set LIBGL_ALWAYS_SOFTWARE=1.");
     glfwSetInputMode(window, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
+    refuse_input(window);
     return window;
 }
 

@@ -126,7 +126,15 @@ double skin_threshold(const Volume& volume, bool phantom) {
 }
 
 std::string threshold_text(double threshold) {
-    return std::abs(threshold) < 99.95 ? fmt::format("{:.3g}", threshold) : fmt::format("{:.0f}", threshold);
+    constexpr int kDigits = 3, kMost = 15;
+    const double size = std::abs(threshold);
+    if (size == 0 || size >= 99.95) return fmt::format("{:.0f}", threshold);
+    const int places = std::min(kMost, kDigits - 1 - static_cast<int>(std::floor(std::log10(size))));
+    std::string text = fmt::format("{:.{}f}", threshold, places);
+    if (text.find('.') == std::string::npos) return text;
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text;
 }
 
 }  // namespace planlight

@@ -116,10 +116,11 @@ PreparationReport report_of(Inputs& in, Preparation& done, ProgressBar& bar) {
 
 void print_summary(const Preparation& done, const PrepareOptions& options) {
     const Case& c = done.prepared;
-    fmt::print("{}\nCase {} in {}: {}, {} triangles, LUT {} x {} x {} voxels of {:.2f} mm, {} plan items.\n",
+    fmt::print("{}\nCase {} in {}: {}, {} triangles, LUT {} x {} x {} voxels of {:.2f} mm, {} plan item{}.\n",
                title_of(c), c.code, options.out.string(),
                done.on_given_surface ? "on the surface given" : "skin at " + threshold_text(done.threshold),
-               c.skin.triangles.size(), c.lut.size[0], c.lut.size[1], c.lut.size[2], c.lut.voxel_mm, c.plan.size());
+               c.skin.triangles.size(), c.lut.size[0], c.lut.size[1], c.lut.size[2], c.lut.voxel_mm, c.plan.size(),
+               c.plan.size() == 1 ? "" : "s");
     fmt::print("Report: {}\n", (options.out / "report.html").string());
 }
 
@@ -139,7 +140,7 @@ int run_prepare(const PrepareOptions& options) {
         write_preparation_report(report, into);
         if (in_the_case) write_pdf(report.document, into / options.pdf.filename());
     });
-    if (!in_the_case) write_pdf(report.document, options.pdf);
+    if (!in_the_case) write_pdf(report.document, options.pdf, ReadableBy::owner);  // with the face and the name
     bar.show("case folder", 1);
     if (options.json)
         std::cout << report.json;

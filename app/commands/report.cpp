@@ -11,6 +11,7 @@
 #include "app/report/operation_comparison.h"
 #include "app/report/operation_pdf.h"
 #include "app/report/operation_report.h"
+#include "app/report/site_paper.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
@@ -67,8 +68,7 @@ int run_report(const ReportOptions& options) {
         compare_moment(facts, options.recording, read_case(options.case_folder));
     const std::string json = operation_json(facts);
     write_operation_report(facts, json, out);
-    if (!options.pdf.empty())
-        write_safely(options.pdf, operation_pdf(facts, paper_of(read_site_settings())), ReadableBy::owner);
+    if (!options.pdf.empty()) write_safely(options.pdf, operation_pdf(facts, paper_of_site()), ReadableBy::owner);
     if (options.json)
         std::cout << json;
     else

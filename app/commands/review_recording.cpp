@@ -12,6 +12,7 @@
 #include "app/live/live_window.h"
 #include "app/live/shown_review.h"
 #include "app/report/moment_comparison.h"
+#include "app/report/operation_report.h"
 #include "app/report/recording_review.h"
 #include "app/site_settings.h"
 #include "app/windows/camera_picture.h"
@@ -139,6 +140,16 @@ void show_moment(const RecordingReviewOptions& options, RecordedMoments& moments
     shown.more = compared(options, moments, frame, pictures, out);
 }
 
+/// As the report on it judges it; what cannot be read is judged by what can.
+PageVerdict judged(RecordingTimeLine& line, const fs::path& recording) {
+    look_at_pictures(line, recording);
+    try {
+        return page_verdict(facts_of_operation(recording));
+    } catch (const DamagedFileError& fault) {
+        return {PageVerdict::Kind::stop, fmt::format("The recording cannot be judged: {}.", fault.what()), {}};
+    }
+}
+
 }  // namespace
 
 fs::path review_folder_of(const fs::path& recording) {
@@ -178,8 +189,7 @@ int run_recording_review(const RecordingReviewOptions& options) {
             if (!options.json) fmt::print("{} pictures in {}\n", frames, (out / "clip").string());
         }
     };
-    write_review(line, out, show,
-                 [&](RecordingTimeLine& looked_at) { look_at_pictures(looked_at, options.recording); });
+    write_review(line, out, show, [&](RecordingTimeLine& looked_at) { return judged(looked_at, options.recording); });
     if (options.json) std::cout << review_json(line);
     if (!line.ended.empty()) warn(line.ended);
     if (line.damaged_pictures)

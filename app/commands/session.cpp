@@ -138,13 +138,15 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
     const RoomFile room = read_room(options.room);
     const RigCalibration rig = read_rig(room.rig);
     if (options.projector_monitor.empty()) options.projector_monitor = room.monitor;
+    if (options.projector_monitor.empty() && !room.recorded)  // a recorded room may have none
+        options.projector_monitor = site.projector_monitor;
     if (options.projector_file.empty() && options.light_delay_ms < 0) options.projector_file = room.projector_file;
     auto resume = window.while_made(kLookedAt, 0.3, [&] { return resume_of(options, the_case, &rig); });
     const CaseDrawing drawing = drawing_of(options, the_case, site, window);
     Listeners listeners(options, the_case, site, drawing.settings);
     LiveOptions live = live_options(options, site, listeners);
     live.resume = std::move(resume);
-    if (room.recorded) live.projector_monitor = options.projector_monitor;  // not the site's: it may have none
+    live.projector_monitor = options.projector_monitor;
     const int code = run_live(
         window,
         [&](Projector* projector, const RoomProgress& progress) {

@@ -22,32 +22,34 @@ namespace {
 /// What this session was told to do, for who looks at its recording later. It names nobody.
 std::string settings_text(const SessionOptions& options, const SiteSettings& site) {
     const LightGateSettings gate;
-    const Instant delay = projector_facts(options).light_delay.value_or(ProjectorProcessSettings{}.light_delay);
-    nlohmann::ordered_json json{
-        {"record", options.record},
-        {"anonymous", options.anonymous},
-        {"autoplay", options.autoplay},
-        {"resumed", !options.resume.empty()},
-        {"igtl_port", options.igtl_port},
-        {"projector_monitor", options.projector_monitor.empty() ? site.projector_monitor : options.projector_monitor},
-        {"light_delay_ms", 1e3 * seconds(delay)},
-        {"light_delay_from", options.light_delay_ms >= 0       ? "option"
-                             : !options.projector_file.empty() ? "projector file"
-                                                               : "default"},
-        {"gate",
-         {{"warn_mm", gate.warn_mm},
-          {"stop_mm", gate.stop_mm},
-          {"least_seen_share", gate.least_seen_share},
-          {"least_seen_of_item", gate.least_seen_of_item},
-          {"fresh_s", seconds(gate.fresh)},
-          {"verified_for_s", seconds(gate.verified_for)}}},
-        {"site",
-         {{"units", site.units},
-          {"surgeon_side", site.surgeon_side},
-          {"language", options.language.empty() ? site.language : options.language},
-          {"theme", options.theme.empty() ? site.theme : options.theme},
-          {"openigtlink_names", site.openigtlink_names}}}};
-    if (options.room.empty())
+    const bool simulated = options.room.empty();
+    const std::string& monitor =
+        simulated && options.projector_monitor.empty() ? site.projector_monitor : options.projector_monitor;
+    nlohmann::ordered_json json{{"record", options.record},
+                                {"anonymous", options.anonymous},
+                                {"autoplay", options.autoplay},
+                                {"resumed", !options.resume.empty()},
+                                {"igtl_port", options.igtl_port},
+                                {"projector_monitor", monitor},
+                                {"gate",
+                                 {{"warn_mm", gate.warn_mm},
+                                  {"stop_mm", gate.stop_mm},
+                                  {"least_seen_share", gate.least_seen_share},
+                                  {"least_seen_of_item", gate.least_seen_of_item},
+                                  {"fresh_s", seconds(gate.fresh)},
+                                  {"verified_for_s", seconds(gate.verified_for)}}},
+                                {"site",
+                                 {{"units", site.units},
+                                  {"surgeon_side", site.surgeon_side},
+                                  {"language", options.language.empty() ? site.language : options.language},
+                                  {"theme", options.theme.empty() ? site.theme : options.theme},
+                                  {"openigtlink_names", site.openigtlink_names}}}};
+    if (!simulated) {  // the simulated projector says itself when its light comes
+        const auto known = projector_facts(options).light_delay;
+        json["light_delay_ms"] = 1e3 * seconds(known.value_or(ProjectorProcessSettings{}.light_delay));
+        json["light_delay_from"] = options.light_delay_ms >= 0 ? "option" : known ? "projector file" : "default";
+    }
+    if (simulated)
         json["simulated"] = {{"preset", options.preset},
                              {"seed", options.seed},
                              {"speed_mm_s", options.speed_mm_s},
@@ -151,13 +153,14 @@ RecordedSession recording_of_session(const SessionOptions& options, const Case& 
     auto sink = std::make_unique<RecordingFile>(file);
     const RecordingHead head = head_of_session(options, the_case, site, drawing);
     const double free_gb = disk_room_of(file.parent_path()).free_gb;
+    const std::string free =
+        free_gb < 10 ? fmt::format("{:.0f} MB", 1000 * free_gb) : fmt::format("{:.0f} GB", free_gb);
     if (options.anonymous) {
-        fmt::print(
-            stderr,
-            "Recorded in {}: what happens and some of the frames, without names, and blurred but for the plan's "
-            "surroundings, at most 1 GB an hour; {:.0f} GB are free. Only {} can read it; no later session can go on "
-            "with its match. Matches with the scan of the face are still kept in {}.\n",
-            file.string(), free_gb, operator_name(), matches_folder(options).string());
+        fmt::print(stderr,
+                   "Recorded in {}: what happens and some of the frames, without names, and blurred but for the plan's "
+                   "surroundings, at most 1 GB an hour; {} are free. Only {} can read it; no later session can go on "
+                   "with its match. Matches with the scan of the face are still kept in {}.\n",
+                   file.string(), free, operator_name(), matches_folder(options).string());
         const NamesLeftOut names = names_left_out(options, the_case, head);
         RecordingHead nameless = without_names(head);
         nameless.settings = names.out_of(head.settings);
@@ -165,12 +168,11 @@ RecordedSession recording_of_session(const SessionOptions& options, const Case& 
                                                   FrameChoiceSettings{}, names),
                 file, !options.no_report, true};
     }
-    fmt::print(stderr,
-               "Recorded in {}: {}; {:.0f} GB are free. It shows the patient's face, and only {} can read it.\n",
+    fmt::print(stderr, "Recorded in {}: {}; {} are free. It shows the patient's face, and only {} can read it.\n",
                file.string(),
                mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
                                           : "every frame, about 23 GB an hour in the paper's room",
-               free_gb, operator_name());
+               free, operator_name());
     return {std::make_unique<SessionRecorder>(std::move(sink), head), file, !options.no_report, false};
 }
 

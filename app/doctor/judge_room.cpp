@@ -47,7 +47,8 @@ DoctorLine judge_identity(const CameraFigures& camera, const std::string& calibr
 }
 
 DoctorLine judge_rate(const CameraFigures& camera) {
-    // A picture expires 75 ms after it was drawn: frames further apart leave darkness between them.
+    // A picture expires 75 ms after it was drawn (65 where they come often): frames further apart leave darkness
+    // between.
     constexpr double kLeast_hz = 1 / 0.075, kComfortable_hz = 20, kOff = 0.05;
     const std::string subject = camera.side + ", rate", said = fmt::format("{:.1f} frames a second", camera.rate_hz);
     if (camera.rate_hz < kLeast_hz)

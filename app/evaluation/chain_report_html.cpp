@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/evaluation/chain_report.h"
+#include "segmentation/skin_threshold.h"
 
 namespace planlight {
 namespace {
@@ -46,10 +47,10 @@ void add_preparation(const Preparation& p, std::vector<DocumentBlock>& blocks) {
     const Case& c = p.prepared;
     blocks.push_back(DocumentHeading{"Before the operation"});
     blocks.push_back(DocumentText{fmt::format(
-        "Skin at {:.0f}; {} pieces ({:.0f} ml: head holder, table, wires) taken away; {} triangles. LUT {} x {} x {} "
+        "Skin at {}; {} pieces ({:.0f} ml: head holder, table, wires) taken away; {} triangles. LUT {} x {} x {} "
         "voxels of {:.1f} mm, each pointing to one of {} skin voxels. Skin {:.2f} s, surface {:.2f} s, LUT {:.2f} s.",
-        p.threshold, p.pieces_removed, p.removed_ml, c.skin.triangles.size(), c.lut.size[0], c.lut.size[1],
-        c.lut.size[2], c.lut.voxel_mm, c.lut.skin.size(), p.segment_s, p.triangulate_s, p.lut_s)});
+        threshold_text(p.threshold), p.pieces_removed, p.removed_ml, c.skin.triangles.size(), c.lut.size[0],
+        c.lut.size[1], c.lut.size[2], c.lut.voxel_mm, c.lut.skin.size(), p.segment_s, p.triangulate_s, p.lut_s)});
     for (const auto& warning : c.warnings) blocks.push_back(DocumentText{warning, Tone::stop});
 }
 

@@ -5,6 +5,7 @@
 #include "app/case_model.h"
 #include "app/console.h"
 #include "app/report/operation_pdf.h"
+#include "app/report/site_paper.h"
 #include "app/session.h"
 #include "app/site_settings.h"
 #include "app/windows/camera_picture.h"
@@ -59,9 +60,9 @@ std::vector<KeyPicture> key_pictures(const Case& the_case, const CaseDrawing& dr
     const SceneView view = view_of_plan(drawing.drawing);
     pictures.push_back(
         {operation.cloud ? "The scan on the skin after the match, coloured by its distance" : "The plan on the skin",
-         render_scene(scene_of_fit(model, FitView::after), view, kWidth, kHeight), false});
+         render_scene(scene_of_fit(model, FitView::after), view, kWidth, kHeight)});
     pictures.push_back({"How far off the match may be: 95 % bound at every point of the skin",
-                        render_scene(scene_of_fit(model, FitView::predicted_error), view, kWidth, kHeight), false});
+                        render_scene(scene_of_fit(model, FitView::predicted_error), view, kWidth, kHeight)});
     if (!operation.facts || !operation.facts->moment) return pictures;
     const OperationMoment& moment = *operation.facts->moment;
     const std::string at = fmt::format(" {:.0f} s after the room was entered", moment.at_s);
@@ -132,7 +133,7 @@ std::vector<std::string> export_into_study(const Case& the_case, const ExportedO
         if (operation.facts) {
             name.series = "report", name.series_number = 9102, name.description = "Planlight: report of operation";
             write_encapsulated_pdf(study, name, "Operation: " + operation.facts->head.case_title,
-                                   operation_pdf(*operation.facts), next("report.dcm"));
+                                   operation_pdf(*operation.facts, paper_of_site()), next("report.dcm"));
         }
         name.series = "pictures", name.series_number = 9103, name.description = "Planlight: key pictures";
         name.number = 0;

@@ -67,7 +67,7 @@ void LiveSession::find_patient(Session& session, const std::vector<PointPair>& l
         name_rows(session.drawing(), shown.rows);  // the match decides which labels have room
         for (const DrawnItem& item : session.drawing().items)
             shown.evidence.insert(shown.evidence.end(), item.warnings.begin(), item.warnings.end());
-        const auto unlit = unlit_warnings(session.drawing());  // first: nothing on the skin says so
+        const auto unlit = evidence_of_labels(session.drawing());  // first: nothing on the skin says so
         shown.evidence.insert(shown.evidence.begin(), unlit.begin(), unlit.end());
     }
     shown.evidence.push_back(keep(found, session.scanned()->clean.kept, landmarks));
@@ -351,7 +351,8 @@ void LiveSession::show_measured(const Session::Update& update, OperatorModel& m)
         if (!plan_lit) m.rows[i].light_off_mm.reset();
         if (!plan_lit || !update.light || i >= update.light->items.size()) continue;
         const ItemLight& item = update.light->items[i];
-        m.rows[i].light_off_mm = item.told() ? std::optional(item.off_mm) : std::nullopt;
+        m.rows[i].light_off_mm =
+            item.told() ? std::optional(std::max(item.off_mm, update.light->far_mm.value_or(0))) : std::nullopt;
     }
 }
 

@@ -6,8 +6,10 @@ void ProjectorWatch::put_into(OperatorModel& model) const {
     if (!problem_.empty()) {
         model.status = {StatusKind::dark,
                         "No projector: " + problem_.what + ".",
-                        {problem_.remedy, "It is looked for every second. Scan and match are kept."},
+                        {problem_.remedy, model.may_light_item ? "It is looked for every second. The match is kept."
+                                                               : "It is looked for every second."},
                         {}};
+        model.light_on = false;
     } else if (was_away_) {
         std::vector<std::string> why{"The projector was away and was started again."};
         if (model.track.enabled) why.emplace_back("Track looks first whether all is as it was.");

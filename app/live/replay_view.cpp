@@ -138,7 +138,9 @@ void ReplayView::updated(const Session& session, const Session::Update& update) 
         change([&](OperatorModel& m) {
             for (std::size_t i = 0; update.light && i < std::min(m.rows.size(), update.light->items.size()); ++i)
                 m.rows[i].light_off_mm =
-                    update.light->items[i].told() ? std::optional(update.light->items[i].off_mm) : std::nullopt;
+                    update.light->items[i].told()
+                        ? std::optional(std::max(update.light->items[i].off_mm, update.light->far_mm.value_or(0)))
+                        : std::nullopt;
         });
     } catch (const std::exception&) {  // no memory: the next update is shown
     }

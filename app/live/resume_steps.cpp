@@ -57,7 +57,7 @@ void LiveSession::resume(Session& session) {
         fmt::format("The match of {} is used again: {} markers within {:.2f} mm, the plan's skin within {:.1f} mm of "
                     "where they put it.",
                     time_of_day(match.made_utc), check.markers, check.marker_off_mm, check.skin_off_mm));
-    const auto unlit = unlit_warnings(session.drawing());
+    const auto unlit = evidence_of_labels(session.drawing());
     shown.evidence.insert(shown.evidence.begin(), unlit.begin(), unlit.end());
     shown.evidence.insert(shown.evidence.end(), blank_.evidence.begin(), blank_.evidence.end());
     const bool taken = happened(SessionHappening::match_resumed, [&](OperatorModel& m) {

@@ -1,6 +1,7 @@
 #include "app/recording/anonymous.h"
 
 #include <fmt/format.h>
+#include <glib.h>
 
 #include <algorithm>
 #include <array>
@@ -69,44 +70,71 @@ bool is_meant(const std::string& text, std::size_t at, const std::string& name) 
     return (letters && name.size() > 3) || stands_as_a_word(text, at, name.size());
 }
 
-unsigned char byte_at(const std::string& text, std::size_t i) {
-    return static_cast<unsigned char>(text[i]);
+/// By code points, so that a letter and its small form take one place each in any script.
+std::u32string code_points(const std::string& text) {
+    std::u32string points;
+    for (std::size_t i = 0; i < text.size();) {
+        const char* at = text.data() + i;
+        const gunichar point = g_utf8_get_char_validated(at, static_cast<gssize>(text.size() - i));
+        const bool valid = static_cast<gint>(point) >= 0;
+        points += valid ? static_cast<char32_t>(point) : U'\xFFFD';
+        i += valid ? static_cast<std::size_t>(g_utf8_next_char(at) - at) : 1;
+    }
+    return points;
 }
 
-/// In small letters (ASCII, and those of Latin and Cyrillic that two bytes of UTF-8 hold), as long as it was.
-std::string in_small_letters(std::string text) {
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const unsigned char c = byte_at(text, i), next = i + 1 < text.size() ? byte_at(text, i + 1) : 0;
-        if (c >= 'A' && c <= 'Z') text[i] = static_cast<char>(c + 'a' - 'A');
-        if (c == 0xC3 && next >= 0x80 && next <= 0x9E && next != 0x97) text[i + 1] = static_cast<char>(next + 0x20);
-        if (c == 0xD0 && next >= 0x90 && next <= 0x9F) text[i + 1] = static_cast<char>(next + 0x20);
-        if (c == 0xD0 && next >= 0xA0 && next <= 0xAF) text[i] = '\xD1', text[i + 1] = static_cast<char>(next - 0x20);
+std::string utf8(const std::u32string& points) {
+    std::string text;
+    for (const char32_t point : points) {
+        std::array<char, 6> bytes{};
+        text.append(bytes.data(), static_cast<std::size_t>(g_unichar_to_utf8(point, bytes.data())));
     }
     return text;
 }
 
+std::u32string in_small_letters(std::u32string text) {
+    for (char32_t& c : text) c = g_unichar_tolower(c);
+    return text;
+}
+
+bool is_of_a_word(char32_t c) {
+    return g_unichar_isalnum(c) != 0 || g_unichar_ismark(c) != 0;
+}
+
 /// What the program itself calls things: it says nothing of whoever may be called so.
-bool is_our_word(const std::string& small) {
-    constexpr std::array kOurs{"planlight", "operator", "surgeon", "patient", "localhost", "light",
-                               "dark",      "head",     "skin",    "plan",    "user",      "root"};
+bool is_our_word(const std::u32string& small) {
+    constexpr std::array<std::u32string_view, 12> kOurs{U"planlight", U"operator", U"surgeon", U"patient",
+                                                        U"localhost", U"light",    U"dark",    U"head",
+                                                        U"skin",      U"plan",     U"user",    U"root"};
     return std::find(kOurs.begin(), kOurs.end(), small) != kOurs.end();
 }
 
-/// Of a script that has no large letters by which a name could be told: Hebrew, Arabic, Chinese and others.
-bool has_no_large_letters(const std::string& text, std::size_t at) {
-    return byte_at(text, at) >= 0xD6;
+/// A part of a person's name is one as a word of its own, or with the s of "Meiers", that begins with a large letter
+/// (or is of a script that has none) or stands in a path or in quotes: "light" is none of Mr Light's.
+bool is_meant_part(const std::u32string& text, std::size_t at, std::size_t size) {
+    constexpr std::u32string_view kOfPaths = U"/\\@_~";
+    const auto is = [&](std::size_t i, auto what) { return i < text.size() && what(text[i]); };
+    const auto of_word = [](char32_t c) { return is_of_a_word(c); };
+    const auto of_path = [&](char32_t c) { return kOfPaths.find(c) != std::u32string_view::npos; };
+    const auto quote = [](char32_t c) { return c == U'"'; };
+    const std::size_t before = at - 1, after = at + size;  // before the first: none
+    const std::size_t after_s = is(after, [](char32_t c) { return c == U's'; }) ? after + 1 : after;
+    if (is(before, of_word) || (is(after, of_word) && is(after_s, of_word))) return false;
+    const bool large = g_unichar_islower(text[at]) == 0;
+    return large || is(before, of_path) || is(after, of_path) || (is(before, quote) && is(after, quote));
 }
 
-/// A part of a person's name is one as a word of its own, or with the s of "Meiers", that begins with a large letter or
-/// stands in a path or in quotes: "light" is none of Mr Light's.
-bool is_meant_part(const std::string& text, const std::string& small, std::size_t at, std::size_t size) {
-    constexpr std::string_view kOfPaths = "/\\@_~";
-    const std::size_t with_s = at + size < text.size() && small[at + size] == 's' ? size + 1 : size;
-    if (!stands_as_a_word(text, at, size) && !stands_as_a_word(text, at, with_s)) return false;
-    const auto of_path = [&](std::size_t i) { return kOfPaths.find(text[i]) != std::string_view::npos; };
-    const bool in_path = (at > 0 && of_path(at - 1)) || (at + size < text.size() && of_path(at + size));
-    const bool large = text.compare(at, 2, small, at, 2) != 0 || has_no_large_letters(text, at);
-    return large || in_path || stands_quoted(text, at, size);
+/// A part of a name is searched in small letters: MEIER is Meier's.
+std::string without_part(std::string text, const std::string& name, const std::string& instead) {
+    std::u32string points = code_points(text), small = in_small_letters(points);
+    const std::u32string part = code_points(name), other = code_points(instead);
+    bool changed = false;
+    for (std::size_t at = small.find(part); at != std::u32string::npos; at = small.find(part, at)) {
+        const bool meant = is_meant_part(points, at, part.size());
+        if (meant) points.replace(at, part.size(), other), small.replace(at, part.size(), other), changed = true;
+        at += meant ? other.size() : 1;
+    }
+    return changed ? utf8(points) : std::move(text);
 }
 
 template <class Do>
@@ -175,17 +203,21 @@ void NamesLeftOut::add_items(const PlanDrawing& drawing) {
     for (std::size_t i = 0; i < drawing.items.size(); ++i) add(drawing.items[i].name, fmt::format("item {}", i + 1));
 }
 
-/// Each word of "MEIER^HANS" or "Dr. Hans Meier" for itself; of two letters and less it is found in too much.
+/// Each word of "MEIER^HANS" or "Dr. Hans Meier" for itself; of two letters and less it is found in too much, but two
+/// signs of Chinese are a name.
 void NamesLeftOut::add_person(const std::string& name) {
-    constexpr std::size_t kLeast = 3;
-    std::string part;
-    for (const char c : name + ' ') {
+    constexpr std::size_t kLeast = 3, kLeastOfWideSigns = 2;
+    std::u32string part;
+    for (const char32_t c : code_points(name) + U' ') {
         if (is_of_a_word(c)) {
-            part += c;
+            part += static_cast<char32_t>(g_unichar_tolower(c));
             continue;
         }
-        if (part.size() >= kLeast && has_letters(part) && !is_our_word(in_small_letters(part)))
-            add(in_small_letters(part), "…", true);
+        const bool letters =
+            std::any_of(part.begin(), part.end(), [](char32_t p) { return g_unichar_isalpha(p) != 0; });
+        const bool wide = std::any_of(part.begin(), part.end(), [](char32_t p) { return g_unichar_iswide(p) != 0; });
+        if (part.size() >= (wide ? kLeastOfWideSigns : kLeast) && letters && !is_our_word(part))
+            add(utf8(part), "…", true);
         part.clear();
     }
 }
@@ -241,12 +273,13 @@ std::string NamesLeftOut::text_without(std::string text) const {
     for (const LeftOut& one : names_)
         if (!one.part && text == one.name) return one.instead;
     for (const auto& [name, instead, part] : names_) {
-        std::string small = part ? in_small_letters(text) : std::string();
-        const std::string& searched = part ? small : text;
-        for (std::size_t at = searched.find(name); at != std::string::npos; at = searched.find(name, at)) {
-            const bool meant = part ? is_meant_part(text, small, at, name.size()) : is_meant(text, at, name);
+        if (part) {
+            text = without_part(std::move(text), name, instead);
+            continue;
+        }
+        for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at)) {
+            const bool meant = is_meant(text, at, name);
             if (meant) text.replace(at, name.size(), instead);
-            if (meant && part) small.replace(at, name.size(), instead);
             at += meant ? instead.size() : 1;
         }
     }

@@ -198,7 +198,11 @@ private:
         if (what == "asked") take_call(call, event);
         if (what == "scanned") say(fmt::format("Scanned: {} points.", event.value("points", 0)));
         if (what == "refused") say("Refused, " + call + ": " + event.value("why", "") + ".");
-        if (what == "pressed") say("Pressed: " + event.value("action", "") + ".");
+        if (what == "pressed") {
+            const std::string action = event.value("action", "");
+            say(action == "projector_lost" ? "The projector was lost, and the session made dark."
+                                           : "Pressed: " + action + ".");
+        }
         if (what == "skin_checked")
             say(event.value("known", false) ? fmt::format("Skin checked: {:.1f} mm off.", event.value("off_mm", 0.0))
                                             : "Skin checked, without an answer: " + event.value("why_not", "") + ".");

@@ -1,5 +1,6 @@
 #include "app/recording/session_events.h"
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 
@@ -58,16 +59,18 @@ Json json_of(const LightCheck& check) {
     Json items = Json::array();
     for (const ItemLight& item : check.items)
         items.push_back({item.lit, item.segments, item.seen, item.off_mm, item.sigma_mm});
-    return {{"items", items},
-            {"expected", check.expected},
-            {"seen", check.seen},
-            {"off_mm", check.off_mm},
-            {"median_mm", check.median_mm},
-            {"most_mm", check.most_mm},
-            {"sigma_mm", check.sigma_mm},
-            {"background", check.background},
-            {"brighter", check.brighter},
-            {"told_whole", check.told_whole}};
+    Json json{{"items", items},
+              {"expected", check.expected},
+              {"seen", check.seen},
+              {"off_mm", check.off_mm},
+              {"median_mm", check.median_mm},
+              {"most_mm", check.most_mm},
+              {"sigma_mm", check.sigma_mm},
+              {"background", check.background},
+              {"brighter", check.brighter},
+              {"told_whole", check.told_whole}};
+    if (check.far_mm) json["far_mm"] = *check.far_mm;
+    return json;
 }
 
 Json json_of(const LightCause& cause) {
@@ -101,6 +104,14 @@ Json json_of(const OverlayStep& overlay) {
             {"points",
              {overlay.counts.points, overlay.counts.lit, overlay.counts.too_steep, overlay.counts.hidden,
               overlay.counts.outside}}};
+}
+
+/// Of the items whose light has a code in place of the name; nothing in recordings of plans without such.
+void add_codes(const Session& session, Json& event) {
+    const auto& items = session.drawing().items;
+    if (std::none_of(items.begin(), items.end(), [](const DrawnItem& item) { return item.lit_by_code; })) return;
+    event["codes"] = Json::array();
+    for (const DrawnItem& item : items) event["codes"].push_back(item.lit_by_code ? item.code : "");
 }
 
 /// Of every item in their order; nothing in recordings of plans without risk structures, as they always were.
@@ -200,6 +211,7 @@ std::string matched(const Session& session) {
     if (found.verdict != Verdict::no) {
         for (const double mm : predicted_errors_mm(session.plan(), found)) json["predicted_mm"].push_back(mm);
         for (const DrawnItem& item : session.drawing().items) json["items"].push_back(item.name);
+        add_codes(session, json);
         add_risks(session, json);
     }
     return text_of(json);

@@ -71,8 +71,11 @@ std::string SessionRecorder::finish() {
 std::string SessionRecorder::trouble() const {
     const RecordingState state = writer_.state();
     if (!state.problem.empty())
-        return fmt::format("The recording stands still: {}. {} pieces are missing; the light is not affected.",
-                           state.problem.in_few_words, state.dropped_chunks);
+        return state.dropped_chunks == 0
+                   ? fmt::format("The recording stands still: {}; the light is not affected.",
+                                 state.problem.in_few_words)
+                   : fmt::format("The recording stands still: {}. {} pieces are missing; the light is not affected.",
+                                 state.problem.in_few_words, state.dropped_chunks);
     if (!state.sync_problem.empty())
         return fmt::format("The disk did not confirm the recording: {}; the light is not affected.",
                            state.sync_problem.in_few_words);

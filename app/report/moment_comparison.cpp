@@ -31,7 +31,7 @@ void check_case(const RecordingHead& head, const Case& the_case, const fs::path&
     throw InputError(recording,
                      fmt::format("is of the case {}, and this is the case {}{}", head.case_code, name.code,
                                  head.case_code == name.code ? ", whose skin or plan is another" : ""),
-                     "Name the case that was used with --case.");
+                     "Give the folder of the case that was used.");
 }
 
 namespace {
@@ -291,6 +291,11 @@ std::string sum_of(const MomentComparison& moment) {
                             "None of the plan's light was found in this frame, at {} places where it should be seen: "
                             "it had only just been asked for, or something was before it.",
                             light.expected);
+    if (light.far_mm)
+        return before + fmt::format(
+                            "The light as a whole was found {:.1f} mm beside the plan: what is marked near its place "
+                            "is other light, or none.",
+                            *light.far_mm);
     return before + fmt::format(
                         "Light was found at {} of {} places; half of them lie within {:.2f} mm of the plan, 95 % "
                         "within {:.2f} mm.",

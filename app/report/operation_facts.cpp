@@ -114,7 +114,7 @@ private:
         if (what == "pressed" && event.value("action", "") == "confirm") take_confirming_press();
         if (what == "pressed" && event.value("action", "") == "dark") say("DARK was pressed.", event);
         if (what == "pressed" && event.value("action", "") == "projector_lost")
-            say("The projector was lost, and the session made dark.", event, true);
+            facts_.refusals.push_back({at_s_, "", "The projector was lost, and the session made dark.", true});
         if (what == "refused")
             facts_.refusals.push_back({at_s_, "", event.value("call", "") + ": " + event.value("why", ""), false});
         if (what == "skin_checked") take_skin_check(event);
@@ -190,6 +190,9 @@ private:
             predicted_.push_back(i < event.at("predicted_mm").size() ? number(event["predicted_mm"][i]) : std::nullopt);
             if (event.contains("risk") && i < event["risk"].size())
                 facts_.items[now_.back()].risk = clearances_from(event["risk"][i]);
+            facts_.items[now_.back()].code = event.contains("codes") && i < event["codes"].size()
+                                                 ? event["codes"][i].get<std::string>()
+                                                 : std::string();
         }
         reached_.assign(now_.size(), false);
         forget_showing();
@@ -199,7 +202,7 @@ private:
     std::size_t item_of(const std::string& name, int n) {
         for (std::size_t i = 0; i < facts_.items.size(); ++i)
             if (facts_.items[i].name == name && n-- == 0) return i;
-        facts_.items.push_back({name, {}, 0, {}, {}, false, {}});
+        facts_.items.push_back({name, {}, 0, {}, {}, false, {}, {}});
         return facts_.items.size() - 1;
     }
 
@@ -236,9 +239,12 @@ private:
     }
 
     void take_check(const Json& check) {
-        light_seen_ = check.value("seen", 0) > 0;
+        // All light found as one farther aside: what was seen near its place then is other light, or none.
+        const auto far_mm = check.contains("far_mm") ? number(check.at("far_mm")) : std::nullopt;
+        light_seen_ = far_mm || check.value("seen", 0) > 0;
         if (light_seen_)
-            if (const auto off_mm = number(check.at("off_mm"))) facts_.light_off_mm.push_back(off_mm_ = *off_mm);
+            if (const auto off_mm = number(check.at("off_mm")))
+                facts_.light_off_mm.push_back(off_mm_ = std::max(*off_mm, far_mm.value_or(0)));
         const Json& items = check.at("items");
         for (std::size_t i = 0; i < std::min(items.size(), now_.size()); ++i) {
             OperationItem& item = facts_.items[now_[i]];
@@ -246,7 +252,8 @@ private:
             reached_[i] = items[i].at(0).get<bool>();
             const int segments = items[i].at(1).get<int>(), seen = items[i].at(2).get<int>();
             if (seen == 0 || 2 * seen < segments) continue;  // what little is seen does not stand for all of it
-            if (const auto off_mm = number(items[i].at(3))) item.measured_mm.push_back(*off_mm);
+            if (const auto off_mm = number(items[i].at(3)))
+                item.measured_mm.push_back(std::max(*off_mm, far_mm.value_or(0)));
         }
         looked_ = true;
     }

@@ -52,7 +52,7 @@ DocumentTable items_of(const OperationFacts& facts) {
             const std::string sign = d.count > 0 ? sign_of(value) : std::string();
             return DocumentText{d.count > 0 ? fmt::format("{:.2f} {}", value, sign) : std::string("-"), tone_of(sign)};
         };
-        table.rows.push_back({{item.name},
+        table.rows.push_back({{named(item)},
                               {shown_text(item, facts)},
                               {duration_text(item.shown_s)},
                               {item.predicted_mm ? fmt::format("{:.2f}", *item.predicted_mm) : "not known"},
@@ -122,7 +122,8 @@ void add_course(const OperationFacts& facts, std::vector<DocumentBlock>& blocks)
 
 void add_moment(const OperationMoment& m, std::vector<DocumentBlock>& blocks) {
     const bool compared = !m.compared[0].empty();
-    blocks.push_back(DocumentHeading{"At " + clock_text(m.at_s) + " (room clock)"});
+    blocks.push_back(DocumentHeading{"At " + clock_text(m.at_s) + " (room clock), " +
+                                     (m.trust == "aligned" ? "aligned" : "to be looked at")});
     DocumentFigures figures{{{"Left camera", "", compared ? m.compared[0] : rgb_of(brightened(m.left))},
                              {"Right camera", "", compared ? m.compared[1] : rgb_of(brightened(m.right))}}};
     if (!m.light.empty()) figures.figures.push_back({"What the projector was given", "", m.light});
@@ -164,19 +165,18 @@ DocumentTable hashes_of(const OperationFacts& facts) {
             true};
 }
 
-PageVerdict page_verdict(const OperationVerdict& verdict) {
-    return {static_cast<PageVerdict::Kind>(verdict.kind), verdict.sentence, verdict.reasons};
-}
-
 }  // namespace
 
 std::string operation_pdf(const OperationFacts& facts, PaperSize paper) {
     Document document{"Operation: " + facts.head.case_title};
-    document.verdict = page_verdict(verdict_of(facts));
+    document.verdict = page_verdict(facts);
     document.facts = facts_of(facts);
     add_items(facts, document.blocks);
     add_course(facts, document.blocks);
-    if (facts.moment) add_moment(*facts.moment, document.blocks);
+    if (facts.moment)
+        add_moment(*facts.moment, document.blocks);
+    else
+        document.blocks.push_back(DocumentText{"No frame with light on the skin was kept."});
     if (!facts.dark.empty()) add_table("Dark by itself", darkness_of(facts), document.blocks);
     add_table("Matches", matches_of(facts), document.blocks);
     add_table("What people said and did", events_of(facts.said), document.blocks);

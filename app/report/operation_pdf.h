@@ -9,6 +9,6 @@ namespace planlight {
 
 /// The report of an operation as PDF (its bytes): what `write_operation_report` shows, in the same order. Throws
 /// DeviceError where its font is not installed.
-std::string operation_pdf(const OperationFacts& facts, PaperSize paper = PaperSize::a4);
+std::string operation_pdf(const OperationFacts& facts, PaperSize paper);
 
 }  // namespace planlight

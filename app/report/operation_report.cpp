@@ -74,7 +74,7 @@ std::string items_html(const OperationFacts& facts) {
     for (std::size_t i = 0; i < std::min(facts.items.size(), kMost); ++i) {
         const OperationItem& item = all ? facts.items[i] : *worst[i];
         const Distribution d = distribution_of(item.measured_mm);
-        html += fmt::format("<tr><td class=\"name\">{}</td>", xml_escaped(short_name(item.name))) +
+        html += fmt::format("<tr><td class=\"name\">{}</td>", xml_escaped(short_name(named(item)))) +
                 (with_risk ? fmt::format("<td class=\"risk\">{}</td>", risk_html(item.risk)) : "") +
                 figure(shown_text(item, facts)) + figure(duration_text(item.shown_s)) + figure(mm(item.predicted_mm)) +
                 (d.count > 0 ? figure(marked(d.median)) + figure(marked(d.p95)) + figure(marked(d.worst))
@@ -90,13 +90,19 @@ std::string items_html(const OperationFacts& facts) {
     return html + "</table><p class=\"muted\">" + kWhatIsMeasured + " " + in_terms_of_f2554(facts) + "</p>";
 }
 
+bool projector_was_lost(const OperationFacts& facts) {
+    return std::any_of(facts.refusals.begin(), facts.refusals.end(), [](const OperationEvent& e) { return e.grave; });
+}
+
 std::string time_html(const OperationFacts& facts) {
     std::string html = fmt::format(
         "<h2>Light and darkness</h2><p>Light for {}: {} of it aligned (measured where it belongs, and verified), {} to "
         "be "
         "looked at. {} updates.</p>",
         duration_text(facts.lit_s), duration_text(facts.aligned_s), duration_text(facts.look_s), facts.updates);
-    if (facts.dark.empty()) return html + "<p>While the plan was followed it was never dark by itself.</p>";
+    if (facts.dark.empty() && !projector_was_lost(facts))
+        return html + "<p>While the plan was followed it was never dark by itself.</p>";
+    if (facts.dark.empty()) return html;
     std::vector<std::pair<std::string, std::pair<int, double>>> dark(facts.dark.begin(), facts.dark.end());
     std::sort(dark.begin(), dark.end(), [](const auto& a, const auto& b) { return a.second.second > b.second.second; });
     html += "<table><tr><th>Dark by itself, because</th><th>times</th><th>for</th></tr>";
@@ -143,7 +149,8 @@ std::string course_html(const OperationFacts& facts) {
     return "<h2>The light over time</h2>" + chart.svg() +
            "<p class=\"muted\">Points: the worst of half a second or more. Bars at the foot: high and green aligned, "
            "low and "
-           "amber to be looked at, none dark. Lines: at 1 mm the light is not trusted, at 2 mm it goes out.</p>";
+           "amber to be looked at, none dark. Lines: at 1 mm the light is not trusted, at 2 mm it goes out; what is "
+           "above 5 mm stands at 5.</p>";
 }
 
 std::string matches_html(const OperationFacts& facts) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/recording/session_recorder.h"
+#include "app/report/html_page.h"
 #include "app/room_kind.h"
 #include "planning_io/recording/recording_reader.h"
 #include "projection/clearance.h"
@@ -25,7 +26,11 @@ struct OperationItem {
     std::vector<double> measured_mm;  ///< by CHECK, each time that its light was seen
     bool looked_at = false;           ///< CHECK told at least once whether the light reached it
     Clearances risk = {};             ///< to the plan's risk structures, as planned; what is worst first
+    std::string code = {};  ///< "#C": what the light had in place of the name, by the last match; empty: the name
 };
+
+/// "#C  Burr hole left", as the window has it.
+std::string named(const OperationItem& item);
 
 struct OperationMatch {
     double at_s = 0;
@@ -142,6 +147,8 @@ struct OperationVerdict {
     std::vector<std::string> reasons;
 };
 OperationVerdict verdict_of(const OperationFacts& facts);
+/// The same, as pages have theirs.
+PageVerdict page_verdict(const OperationFacts& facts);
 /// "✓", "⚠", "✗"; and "good", "look", "stop".
 std::string sign_of(OperationVerdict::Kind kind);
 std::string word_of(OperationVerdict::Kind kind);

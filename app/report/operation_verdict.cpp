@@ -162,6 +162,11 @@ OperationVerdict verdict_of(const OperationFacts& facts) {
     return verdict;
 }
 
+PageVerdict page_verdict(const OperationFacts& facts) {
+    const OperationVerdict verdict = verdict_of(facts);
+    return {static_cast<PageVerdict::Kind>(verdict.kind), verdict.sentence, verdict.reasons};
+}
+
 Deviations deviations_of(const OperationFacts& facts) {
     Deviations of;
     double sum = 0, squares = 0;
@@ -189,6 +194,10 @@ std::string in_terms_of_f2554(const OperationFacts& facts) {
         of.count, of.mean_mm, of.deviation_mm, of.rms_mm, of.worst_mm);
 }
 
+std::string named(const OperationItem& item) {
+    return item.code.empty() ? item.name : item.code + "  " + item.name;
+}
+
 std::string operator_text(const RecordingHead& head) {
     const bool account = !head.operator_named && !head.operator_name.empty();
     return head.operator_name + (account ? " (account of the computer)" : "");
@@ -199,10 +208,12 @@ std::string settings_in_words(const RecordingHead& head) {
     if (!settings.is_object()) return {};
     try {
         const Json& gate = settings.at("gate");
-        return fmt::format("gate: amber above {:g} mm, dark above {:g} mm; projector latency {:g} ms ({})",
-                           gate.at("warn_mm").get<double>(), gate.at("stop_mm").get<double>(),
-                           settings.at("light_delay_ms").get<double>(),
-                           settings.at("light_delay_from").get<std::string>());
+        std::string words = fmt::format("gate: amber above {:g} mm, dark above {:g} mm",
+                                        gate.at("warn_mm").get<double>(), gate.at("stop_mm").get<double>());
+        if (settings.contains("light_delay_ms"))
+            words += fmt::format("; projector latency {:g} ms ({})", settings.at("light_delay_ms").get<double>(),
+                                 settings.at("light_delay_from").get<std::string>());
+        return words;
     } catch (const Json::exception&) {
         return {};  // another program's: they stand in the figures as they are
     }

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/report/chart.h"
-#include "app/report/html_page.h"
 #include "app/report/operation_report.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
@@ -53,42 +52,55 @@ Chart::Points worst_of(const RecordingTimeLine& line, double unit_s, double Reco
     return points;
 }
 
-/// What the light was, all in all, and what of it a person should look at first.
-PageVerdict verdict_of(const RecordingTimeLine& line) {
-    double seconds_of[3] = {0, 0, 0};
+/// When the light was measured farthest aside; empty where it never was.
+std::string worst_in_words(const RecordingTimeLine& line) {
     const RecordingTimeLine::Stretch* worst = nullptr;
-    for (const auto& stretch : line.stretches) {
-        seconds_of[static_cast<std::size_t>(stretch.trust)] += stretch.to_s - stretch.from_s;
+    for (const auto& stretch : line.stretches)
         if (stretch.off_mm >= 0 && (!worst || stretch.off_mm > worst->off_mm)) worst = &stretch;
-    }
+    return worst ? fmt::format(
+                       "At worst the cameras measured the light {:.2f} mm beside the plan (95 % of it), {:.1f} s after "
+                       "the room was entered.",
+                       worst->off_mm, worst->from_s)
+                 : std::string();
+}
+
+/// For how long the light was what.
+std::string followed_in_words(const RecordingTimeLine& line) {
+    if (line.stretches.empty()) return "The plan was not followed: there was no light of it.";
+    double seconds_of[3] = {0, 0, 0};
+    for (const auto& stretch : line.stretches)
+        seconds_of[static_cast<std::size_t>(stretch.trust)] += stretch.to_s - stretch.from_s;
     const auto of = [&](LightTrust trust) { return seconds_of[static_cast<std::size_t>(trust)]; };
+    return fmt::format("The plan was followed for {}: aligned for {}, to be looked at for {}, dark for {}.",
+                       duration_text(of(LightTrust::aligned) + of(LightTrust::look) + of(LightTrust::dark)),
+                       duration_text(of(LightTrust::aligned)), duration_text(of(LightTrust::look)),
+                       duration_text(of(LightTrust::dark)));
+}
+
+/// The verdict of the report on the same recording, and what only a time line tells. Until that is known nothing is
+/// said to be good.
+PageVerdict verdict_of(const RecordingTimeLine& line, const std::optional<PageVerdict>& judged) {
     PageVerdict verdict;
-    verdict.words =
-        line.stretches.empty()
-            ? "The plan was not followed: there was no light of it."
-            : fmt::format("The plan was followed for {}: aligned for {}, to be looked at for {}, dark for {}.",
-                          duration_text(of(LightTrust::aligned) + of(LightTrust::look) + of(LightTrust::dark)),
-                          duration_text(of(LightTrust::aligned)), duration_text(of(LightTrust::look)),
-                          duration_text(of(LightTrust::dark)));
-    if (worst)
-        verdict.reasons.push_back(fmt::format(
-            "At worst the cameras measured the light {:.2f} mm beside the plan (95 % of it), {:.1f} s after "
-            "the room was entered.",
-            worst->off_mm, worst->from_s));
-    if (!line.ended.empty()) verdict.reasons.push_back(line.ended);
-    const double off_mm = worst ? worst->off_mm : 0;
-    if (line.damaged || line.damaged_pictures || off_mm > kOperationStop_mm)
-        verdict.kind = PageVerdict::Kind::stop;
-    else if (!line.ended.empty() || off_mm > kOperationLook_mm ||
-             of(LightTrust::aligned) <= of(LightTrust::look) + of(LightTrust::dark))
+    if (judged) {
+        verdict = *judged;
+        verdict.reasons.push_back(followed_in_words(line));
+    } else {
         verdict.kind = PageVerdict::Kind::look;
+        verdict.words = followed_in_words(line);
+        verdict.reasons.push_back("The recording has not been read through yet, and nothing of it is judged.");
+    }
+    if (const std::string worst = worst_in_words(line); !worst.empty()) verdict.reasons.push_back(worst);
+    if (!line.ended.empty() &&
+        std::find(verdict.reasons.begin(), verdict.reasons.end(), line.ended) == verdict.reasons.end())
+        verdict.reasons.push_back(line.ended);
+    if (line.damaged || line.damaged_pictures) verdict.kind = PageVerdict::Kind::stop;
     return verdict;
 }
 
 }  // namespace
 
-std::string review_page(const RecordingTimeLine& line, const std::vector<std::pair<std::string, std::string>>& pictures,
-                        const std::string& more) {
+std::string review_page(const RecordingTimeLine& line, const std::optional<PageVerdict>& judged,
+                        const std::vector<std::pair<std::string, std::string>>& pictures, const std::string& more) {
     constexpr double kMost_mm = 3;
     constexpr std::size_t kMostEvents = 400;
     const bool long_one = line.lasted_s > 300;
@@ -120,7 +132,7 @@ std::string review_page(const RecordingTimeLine& line, const std::vector<std::pa
     body += "</table>";
     if (line.events.size() > kMostEvents)
         body += fmt::format("<p>And {} more, in review.json.</p>", line.events.size() - kMostEvents);
-    return html_page("Session: " + line.head.case_title, verdict_of(line),
+    return html_page("Session: " + line.head.case_title, verdict_of(line, judged),
                      {{"Operator", line.head.operator_name.empty() ? "left out" : operator_text(line.head)},
                       {"Began", utc_and_local_time(line.head.began_utc)},
                       {"Room clock 0:00:00", utc_and_local_time(line.room_entered_utc)},
@@ -158,24 +170,26 @@ std::string review_json(const RecordingTimeLine& line) {
 
 void write_review(RecordingTimeLine& line, const std::filesystem::path& folder,
                   const std::function<void(ReviewedMoment&)>& show,
-                  const std::function<void(RecordingTimeLine&)>& look) {
+                  const std::function<PageVerdict(RecordingTimeLine&)>& look) {
     ReviewedMoment moment;
+    std::optional<PageVerdict> judged;
     const auto write_page = [&] {
-        write_safely(folder / "index.html", review_page(line, moment.pictures, moment.more), ReadableBy::owner);
+        write_safely(folder / "index.html", review_page(line, judged, moment.pictures, moment.more), ReadableBy::owner);
     };
     const auto write_figures = [&] { write_safely(folder / "review.json", review_json(line), ReadableBy::owner); };
     write_page();
     write_figures();
-    std::exception_ptr damage;
+    std::exception_ptr fault;
     try {
         show(moment);
-    } catch (const DamagedFileError&) {
-        damage = std::current_exception();
+    } catch (const Error&) {  // that a moment cannot be shown is not all that is to be said of the recording
+        fault = std::current_exception();
     }
     if (!moment.pictures.empty()) write_page();
-    look(line);
-    if (line.damaged_pictures) write_page(), write_figures();
-    if (damage) std::rethrow_exception(damage);
+    judged = look(line);
+    write_page();
+    if (line.damaged_pictures) write_figures();
+    if (fault) std::rethrow_exception(fault);
 }
 
 }  // namespace planlight

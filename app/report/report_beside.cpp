@@ -3,6 +3,7 @@
 #include "app/report/operation_comparison.h"
 #include "app/report/operation_pdf.h"
 #include "app/report/operation_report.h"
+#include "app/report/site_paper.h"
 #include "planning_io/files/safe_write.h"
 
 namespace planlight {
@@ -14,7 +15,7 @@ ReportBeside write_report_beside(const std::filesystem::path& recording, const s
     report.page.replace_extension(".html");
     report.pdf.replace_extension(".pdf");
     write_operation_report(facts, operation_json(facts), report.page);
-    write_safely(report.pdf, operation_pdf(facts), ReadableBy::owner);
+    write_safely(report.pdf, operation_pdf(facts, paper_of_site()), ReadableBy::owner);
     return report;
 }
 

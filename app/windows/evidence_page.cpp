@@ -13,14 +13,23 @@
 namespace planlight {
 namespace {
 
+/// "B1, ⌀7, 6 mm deep": a name that ends in a number does not run into the figure behind it.
+std::string with_commas(std::string name) {
+    constexpr std::string_view kApart = "  ";
+    for (std::size_t at = name.find(kApart); at != std::string::npos; at = name.find(kApart, at))
+        name.replace(at, kApart.size(), ", ");
+    return name;
+}
+
 std::string words_of(const Pen& pen, const PlanRow& row, const OperatorModel& model) {
     const std::initializer_list<double> limits{model.warn_above_mm, model.stop_above_mm};
-    if (row.hidden) return row.name + ". " + pen.say("Hidden: it is not lit.");
+    if (row.hidden) return with_commas(row.name) + ". " + pen.say("Hidden: it is not lit.");
     std::string words =
-        pen.say(row.name + ". " +
+        pen.say(with_commas(row.name) + ". " +
                 (row.predicted_error_mm
                      ? "By the match it lies within " + error_text(row.predicted_error_mm, "mm", limits) + " (95 %)."
                      : "How far off it may be is not known yet."));
+    if (row.bare) words += " " + pen.say("No name stands beside its light.");
     if (row.light_off_mm)
         words +=
             " " + pen.say("Its light was seen " + error_text(row.light_off_mm, "mm", limits) + " beside its place.");

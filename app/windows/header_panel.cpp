@@ -107,12 +107,19 @@ std::string parts_in(const ImFont* font, std::string parts, float width) {
     return parts;
 }
 
+/// The case has no patient's name: its title is "Case " and its code, with which the subtitle begins.
+bool is_code(const OperatorModel& model) {
+    constexpr std::string_view kCase = "Case ";
+    return model.case_title.starts_with(kCase) &&
+           model.case_subtitle.starts_with(model.case_title.substr(kCase.size()) + " ");
+}
+
 /// Three lines: whose head, which plan, which room and case.
 struct CaseLines {
     std::string patient, plan, unreal, rest;
 
     CaseLines(const Pen& pen, const OperatorModel& model)
-        : patient(model.case_title),
+        : patient(is_code(model) ? pen.say(model.case_title) : model.case_title),
           plan(around_names(pen, model.case_plan)),
           rest(around_names(pen, model.case_subtitle)) {
         if (const char* const words = unreal_words(model.room_kind)) unreal = pen.say(words);

@@ -147,6 +147,7 @@ struct PlanRow {
     Clearances risk = {};         ///< to risk structures, what is worst first: all that warn, or else the nearest
     bool hidden = false;          ///< by a person: not lit, not in the 3-D view
     std::string short_name = {};  ///< "B1  ⌀7": in the table, where the depth has a column; empty: the name
+    bool bare = false;            ///< no name stands beside its light: the plan is crowded
 
     bool operator==(const PlanRow&) const = default;
 };

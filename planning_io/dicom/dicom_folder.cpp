@@ -42,8 +42,18 @@ std::string defaced(vtkDICOMMetaData* meta) {
             return "de-identification by code 113102, Clean Recognizable Visual Features";
     const std::string method =
         lower_case(text_at(meta, vtkDICOMTag(0x0012, 0x0063)) + " " + text_at(meta, DC::SeriesDescription));
-    for (const char* word : {"deface", "refaced", "mask_face", "skull strip", "skull-strip", "skullstrip"})
+    for (const char* word :
+         {"deface", "defacing", "reface", "mask_face", "quickshear", "skull strip", "skull-strip", "skullstrip"})
         if (method.find(word) != std::string::npos) return std::string("\"") + word + "\" in its description";
+    return "";
+}
+
+/// How the file says that its picture was made of several slices (DICOM PS3.3 C.7.6.1.1.2 and C.8.16.1): maximum and
+/// minimum intensity projections, subtractions.
+std::string projected(vtkDICOMMetaData* meta) {
+    const std::string type = "\\" + text_at(meta, DC::ImageType) + "\\";
+    for (const char* word : {"MIP", "MINIP", "MAX_IP", "MIN_IP", "PROJECTION IMAGE", "SUBTRACTION", "SUBTRACT"})
+        if (type.find(fmt::format("\\{}\\", word)) != std::string::npos) return std::string("Image Type ") + word;
     return "";
 }
 
@@ -63,6 +73,7 @@ DicomSlice slice_of(vtkDICOMMetaData* meta, int frame, const std::string& name) 
         slice.slope = numbers_at(meta, frame, DC::RescaleSlope, 1)[0];
         slice.intercept = numbers_at(meta, frame, DC::RescaleIntercept, 1)[0];
     }
+    slice.thickness_mm = numbers_at(meta, frame, DC::SliceThickness, 1)[0];
     slice.fat_shift_in_ct = fat_shift_of(meta, frame, slice);
     return slice;
 }
@@ -76,7 +87,8 @@ void add_common(vtkDICOMMetaData* meta, DicomFile& file) {
     const std::string stored =
         fmt::format("{} of {} bits, {}", meta->Get(0, DC::BitsStored).AsInt(), meta->Get(0, DC::BitsAllocated).AsInt(),
                     meta->Get(0, DC::PixelRepresentation).AsInt() ? "signed" : "unsigned");
-    const std::string face = defaced(meta), syntax = text_at(meta, DC::TransferSyntaxUID);
+    const std::string made_of_several = projected(meta), face = defaced(meta),
+                      syntax = text_at(meta, DC::TransferSyntaxUID);
     for (DicomSlice& slice : file.slices) {
         slice.patient = patient;
         slice.frame_of_reference_uid = frame_of_reference;
@@ -84,6 +96,7 @@ void add_common(vtkDICOMMetaData* meta, DicomFile& file) {
         slice.stored_as = stored;
         slice.transfer_syntax = syntax;
         slice.defaced = face;
+        slice.projected = made_of_several;
         slice.rows = meta->Get(0, DC::Rows).AsInt();
         slice.columns = meta->Get(0, DC::Columns).AsInt();
         slice.samples = meta->Get(0, DC::SamplesPerPixel).AsInt();

@@ -118,6 +118,17 @@ void note_geometry(const DicomSeries& series, Volume& volume) {
         }
 }
 
+/// Slices that overlap by more than half are means over what lies around them: their skin is blurred along the stack.
+void note_thickness(const std::vector<DicomSlice>& slices, Volume& volume) {
+    constexpr double kMostSteps = 2.2, kThin_mm = 3;
+    const double step = volume.ct_from_voxel.linear().col(2).norm(), thick = slices[slices.size() / 2].thickness_mm;
+    if (thick > kThin_mm && thick > kMostSteps * step)
+        volume.notes.push_back(fmt::format(
+            "each of its slices is {:.1f} mm thick, and they stand {:.1f} mm apart: the skin is blurred, and "
+            "may be swollen where it is round; give thinner slices if there are any",
+            thick, step));
+}
+
 /// Slices that lie off their places on an even grid: laid onto one of the smallest step, linear between the cuts where
 /// they really are. A few hundredths of a step are left as they are, and said.
 void lay_on_even_grid(Volume& volume, const std::vector<DicomSlice>& slices) {
@@ -274,8 +285,10 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted, Slice
     copy_stored_values(reader->GetOutput(), volume, path);
     rescale(volume, meaning, series.files.front().rescale_type, slices.front().has_rescale);
     lay_on_even_grid(volume, slices);
+    note_thickness(slices, volume);
     make_right_handed(volume);
     check_for_skin(volume, path);
+    note_slice_faults(volume);
     return volume;
 }
 

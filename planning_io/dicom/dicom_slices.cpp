@@ -49,6 +49,9 @@ std::optional<DicomRefusal> fault_of_values(const DicomSlice& s) {
     if (!std::isfinite(s.slope) || !std::isfinite(s.intercept) || s.slope <= 0 || s.slope > 1e6 ||
         std::abs(s.intercept) > 1e6)
         return refusal(fmt::format("{} scales its values by {} x + {}", s.file, s.slope, s.intercept));
+    if (!s.projected.empty())
+        return refusal(fmt::format("{} is no slice of the patient but made of several ({})", s.file, s.projected),
+                       "Give the thin slices that it was made of: the skin of a projection is swollen.");
     if (!s.defaced.empty())
         return refusal(s.file + " says that the face was taken away (" + s.defaced + ")",
                        "Give the series as the scanner made it: the light is aligned by the skin of the face.");

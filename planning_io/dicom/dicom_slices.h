@@ -27,7 +27,9 @@ struct DicomSlice {
     std::string transfer_syntax;      ///< UID; empty: implicit little endian
     double slope = 1, intercept = 0;  ///< of the rescaling
     bool has_rescale = false;
-    std::string defaced;  ///< how it says that the face was taken away
+    std::string defaced;    ///< how it says that the face was taken away
+    std::string projected;  ///< how it says that it was made of several slices, as a MIP is
+    double thickness_mm = kUnsaid;
     /// Of an MR: `Volume::fat_shift_in_ct`; zero when it does not say, or fat was suppressed.
     Eigen::Vector3d fat_shift_in_ct = Eigen::Vector3d::Zero();
 };

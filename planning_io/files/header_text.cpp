@@ -126,7 +126,8 @@ fs::path data_file_beside(const fs::path& header, const std::string& name) {
 
 void check_not_defaced(const fs::path& file, const std::string& description) {
     const std::string said = lower_case(file.filename().string() + " " + description);
-    for (const char* word : {"deface", "refaced", "mask_face", "skull-strip", "skullstrip", "skull_strip"})
+    for (const char* word :
+         {"deface", "defacing", "reface", "mask_face", "quickshear", "skull-strip", "skullstrip", "skull_strip"})
         if (said.find(word) != std::string::npos)
             throw InputError(file, std::string("says that the face or the skin was taken away (\"") + word + "\")",
                              "Give the series as the scanner made it: the light is aligned by the skin of the face.");

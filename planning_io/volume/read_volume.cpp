@@ -29,6 +29,7 @@ Volume checked(Volume volume, const fs::path& path) {
     make_right_handed(volume);
     fill_corners(volume);
     check_for_skin(volume, path);
+    note_slice_faults(volume);
     return volume;
 }
 

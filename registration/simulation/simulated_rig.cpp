@@ -71,7 +71,8 @@ struct SimulatedRig::Room final : Projector, StereoCamera, Clock {
     CameraView left_view, right_view;
     Sensor left_sensor, right_sensor;
     std::optional<Eigen::Matrix4d> seen_room_from_ct;  ///< the pose both views hold
-    double gain = 1;                                   ///< full scales per white light on white paper
+    double gain = 1;      ///< full scales per white light on white paper, at the exposure of the beginning
+    double exposure = 1;  ///< times that one
     std::vector<float> light_buffer;
     Instant now_{};
 };
@@ -153,8 +154,8 @@ void SimulatedRig::Room::look_at_head(Instant at) {
 
 GrayImage SimulatedRig::Room::expose(CameraView& view, const Sensor& sensor, const LightMap& light, double lamps,
                                      std::uint64_t frame) {
-    const double ambient = lamps * settings.ambient / SkinLook::kSkinAlbedo;
-    view.expose(light, static_cast<float>(gain), static_cast<float>(ambient), light_buffer);
+    const double ambient = exposure * lamps * settings.ambient / SkinLook::kSkinAlbedo;
+    view.expose(light, static_cast<float>(exposure * gain), static_cast<float>(ambient), light_buffer);
     return sense(sensor, light_buffer, frame);
 }
 
@@ -248,6 +249,11 @@ void SimulatedRig::slip_marker(int marker, const Vector3d& shift_in_ct) {
         sticker.normal_in_ct = place.normal_in_ct;
     }
     room_->seen_room_from_ct.reset();
+}
+
+void SimulatedRig::set_lamps(double ambient, double exposure) {
+    room_->settings.ambient = ambient;
+    room_->exposure = exposure;
 }
 
 void SimulatedRig::delay_light(Instant untold) {

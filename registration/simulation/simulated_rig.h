@@ -84,6 +84,10 @@ public:
     /// A marker slips along the skin by about that much, ct; `marker` below 0: all of them, as when they sit on a cap.
     void slip_marker(int marker, const Eigen::Vector3d& shift_in_ct);
 
+    /// The lamps are turned up or down: from now on they make white skin so bright, as a share of full scale at the
+    /// exposure the room began with, and the cameras are exposed `exposure` times as long as then.
+    void set_lamps(double ambient, double exposure = 1);
+
     /// From now on an order becomes light so much later than the projector promises.
     void delay_light(Instant untold);
 

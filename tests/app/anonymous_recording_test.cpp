@@ -100,6 +100,25 @@ TEST(Anonymous, LeavesFiguresTimesAndWordsAsTheyAre) {
     EXPECT_EQ(out["items"][0], "item 1");
 }
 
+/// Capital letters are told from small ones in every script that has them, and where it has none every word is meant.
+TEST(Anonymous, PartsOfANameAreLeftOutInAnyScript) {
+    const auto without = [](const char* name, const char* text) {
+        NamesLeftOut names{Case{}};
+        names.add_person(name);
+        return names.text_without(text);
+    };
+    EXPECT_EQ(without("Łukasz^Żak", "Patient Łukasz Żak, ŁUKASZ."), "Patient … …, ….");
+    EXPECT_EQ(without("ŠIMEK^JAN", "Šimek was here; ŠIMEK; Jan"), "… was here; …; …");
+    EXPECT_EQ(without("ČAPEK^KAREL", "Čapek"), "…");
+    EXPECT_EQ(without("Ёлкин^Пётр", "Ёлкин лежит, ЁЛКИН, Пётр"), "… лежит, …, …");
+    EXPECT_EQ(without("Παπαδόπουλος^Γιώργος", "Παπαδόπουλος, ΓΙΏΡΓΟΣ"), "…, …");
+    EXPECT_EQ(without("Özdemir^İbrahim", "Özdemir İbrahim, ÖZDEMİR"), "… …, …");
+    EXPECT_EQ(without("王^小明", "小明 lies still"), "… lies still");
+    EXPECT_EQ(without("محمد^علي", "\"محمد\" lies still"), "\"…\" lies still");
+    EXPECT_EQ(without("Łąka", "łąka jest zielona"), "łąka jest zielona") << "small: a word, if it were one";
+    EXPECT_EQ(without("Meier", "\xff Meier"), "\xEF\xBF\xBD …") << "what is no UTF-8 hides no name";
+}
+
 /// Scanners write MEIER^HANS, people Meier: each part is left out, and the words that are spelt as it are not.
 TEST(Anonymous, PartsOfANamePeopleAndFoldersAreLeftOutAndWordsSpeltAlikeAreNot) {
     Case the_case;

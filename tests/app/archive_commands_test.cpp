@@ -89,7 +89,7 @@ TEST_F(ArchiveCommands, ASeriesBecomesACaseAndWhatCameOfItIsFoundBesideIt) {
                    pdf = folder_.path() / "back.pdf";
     if (std::system(("dcm2pdf '" + document.string() + "' '" + pdf.string() + "'").c_str()) != 0)
         GTEST_SKIP() << "dcmtk is not installed";
-    const std::string wanted = operation_pdf(*phantom.operation.facts);
+    const std::string wanted = operation_pdf(*phantom.operation.facts, PaperSize::a4);
     EXPECT_EQ(test::whole(pdf).substr(0, wanted.size()), wanted) << "the report as it was written";
 }
 

@@ -121,7 +121,7 @@ protected:
         refused_or_done("report", [&] {
             const OperationFacts f = facts_of_operation(file());
             operation_json(f);
-            operation_pdf(f);
+            operation_pdf(f, PaperSize::a4);
             page_of(f);
         });
         refused_or_done("resume", [&] { last_match_of(file()); });

@@ -157,7 +157,7 @@ TEST_F(MomentOfSession, IsMeasuredAnewAsTheSessionItselfMeasuredIt) {
         write_png(rgb_of(brightened(pictures.right)), fs::path(folder) / "right.png");
         write_png(render_scene(scene_of(moment, std::make_shared<TriangleMesh>(the_case().skin)), view_of(moment)),
                   fs::path(folder) / "head.png");
-        write_safely(fs::path(folder) / "index.html", review_page(line, {}, page));
+        write_safely(fs::path(folder) / "index.html", review_page(line, {}, {}, page));
     }
     expect_on_the_report(pictures);
     const MomentComparison dark = compared(first_frame_s_);

@@ -100,6 +100,20 @@ TEST_F(Operation, WhoseSkinSlidIsNotGood) {
     EXPECT_EQ(json::parse(operation_json(f))["skin_off_mm"], 1.9);
 }
 
+/// What was seen near the strokes' places then is other light: 8 mm are not reported as 0.35.
+TEST_F(Operation, LightThatWasFoundFarAsideIsReportedAsFarAside) {
+    match();
+    lit(0.35, 0.35, "look");
+    const std::size_t at = chunks_.size() - 2;
+    json far = json::parse(chunks_[at].payload);
+    far["check"]["far_mm"] = 8.0;
+    chunks_[at].payload = far.dump();
+    const OperationFacts f = facts();
+    EXPECT_EQ(f.light_off_mm, std::vector<double>{8.0});
+    EXPECT_EQ(f.items[0].measured_mm, std::vector<double>{8.0});
+    EXPECT_NE(verdict_of(f).kind, OperationVerdict::Kind::good);
+}
+
 TEST_F(Operation, AFigureThatIsNotKnownIsLeftOutNeverZero) {
     match();
     lit(0.5, 0.5, "aligned");

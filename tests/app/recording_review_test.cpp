@@ -102,13 +102,19 @@ TEST_F(RecordingReview, ShowsTheGatesColoursAndTheErrorsOverTime) {
                event.what.starts_with("Green: ");
     });
     EXPECT_EQ(colours, 3);
-    const std::string page = review_page(line, {{"x.png", "A picture <of> it"}});
+    const std::string page = review_page(line, {}, {{"x.png", "A picture <of> it"}});
     EXPECT_NE(page.find("A picture &lt;of&gt; it"), std::string::npos);
     const auto of = [&](LightTrust trust) { return duration_text(seconds_of[static_cast<std::size_t>(trust)]); };
     EXPECT_NE(page.find("aligned for " + of(LightTrust::aligned) + ", to be looked at for " + of(LightTrust::look) +
                         ", dark for " + of(LightTrust::dark) + "."),
               std::string::npos);
-    EXPECT_NE(page.find(sign_of(PageVerdict::Kind::look)), std::string::npos) << "aligned for a third of the time only";
+    EXPECT_NE(page.find(sign_of(PageVerdict::Kind::look)), std::string::npos) << "nobody has judged it yet";
+    EXPECT_NE(page.find("not been read through yet"), std::string::npos);
+    const std::string judged = review_page(line, PageVerdict{PageVerdict::Kind::good, "All was well.", {"So it was."}});
+    EXPECT_NE(judged.find("All was well."), std::string::npos);
+    EXPECT_NE(judged.find("So it was."), std::string::npos);
+    EXPECT_EQ(judged.find("not been read through yet"), std::string::npos);
+    EXPECT_NE(judged.find("0.90 mm beside the plan"), std::string::npos);
     EXPECT_NE(page.find("0.90 mm beside the plan (95 % of it), 25.1 s after"), std::string::npos);
     const auto figures = nlohmann::json::parse(review_json(line));
     EXPECT_EQ(figures["frames_s"].size(), 30u);
@@ -312,17 +318,29 @@ TEST_F(RecordingReview, PageAndMomentAreThereBeforeThePicturesAreLookedAtAndTell
         EXPECT_NE(page().find("frame.png"), std::string::npos) << "its picture does not wait either";
         looked_at.damaged_pictures = true;
         looked_at.ended = "damaged among its pictures";
+        return PageVerdict{PageVerdict::Kind::good, "What was read is good.", {}};
     };
     write_review(line, out, show, find_damage);
+    EXPECT_NE(page().find("verdict stop"), std::string::npos) << "what is damaged is not good";
     EXPECT_NE(page().find("damaged among its pictures"), std::string::npos);
     EXPECT_NE(page().find("frame.png"), std::string::npos);
     EXPECT_EQ(figures()["ended"], "damaged among its pictures");
     for (const char* file : {"index.html", "review.json"})
         EXPECT_EQ(fs::status(out / file).permissions(), fs::perms(0600)) << file;
-    const auto unreadable = [&](ReviewedMoment&) { throw DamagedFileError(file_, "a piece of it does not read", "x"); };
     bool looked_at = false;
-    EXPECT_THROW(write_review(line, out, unreadable, [&](RecordingTimeLine&) { looked_at = true; }), DamagedFileError);
+    const auto look = [&](RecordingTimeLine&) {
+        looked_at = true;
+        return PageVerdict{PageVerdict::Kind::good, "All was well.", {}};
+    };
+    const auto unreadable = [&](ReviewedMoment&) { throw DamagedFileError(file_, "a piece of it does not read", "x"); };
+    EXPECT_THROW(write_review(line, out, unreadable, look), DamagedFileError);
     EXPECT_TRUE(looked_at) << "that one moment does not read is not all that is to be said";
+    looked_at = false;
+    line = time_line_of(file_);
+    const auto no_frames = [&](ReviewedMoment&) { throw InputError(file_, "kept no frame then", "x"); };
+    EXPECT_THROW(write_review(line, out, no_frames, look), InputError);
+    EXPECT_TRUE(looked_at);
+    EXPECT_NE(page().find("All was well."), std::string::npos) << "judged all the same";
 }
 
 TEST_F(RecordingReview, SaysWhatTheClockOnTheWallWasAtItsBeginningAndWhatTheSessionWasTold) {

@@ -99,7 +99,8 @@ TEST_F(StartedSession, IsHeardByAnotherSystemAndEndsWithItsReport) {
     const RecordingHead head = head_of_recording(file);
     EXPECT_EQ(head.operator_name, "Dr. Anna Meier");
     EXPECT_TRUE(head.operator_named);
-    EXPECT_NE(head.settings.find("\"light_delay_ms\":25.0"), std::string::npos) << head.settings;
+    EXPECT_NE(head.settings.find("\"simulated\":"), std::string::npos) << head.settings;
+    EXPECT_EQ(head.settings.find("light_delay"), std::string::npos) << "a simulated projector has none to be told";
     int lights = 0;
     for (const auto& picture : fs::directory_iterator(shots)) {
         lights += picture.path().filename().string().starts_with("light-");

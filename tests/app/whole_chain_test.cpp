@@ -112,6 +112,46 @@ TEST_F(WholeChain, ADoubtfulMatchIsDrawnOnThePersonsWordAndTheWordHoldsForThatMa
     EXPECT_FALSE(lit()) << "that word was given for another match";
 }
 
+/// The brightest number of a picture, and what CHECK last measured.
+struct LightOfSession {
+    int brightest = 0, looks = 0, dark = 0;
+    LightCheck last{};
+};
+
+LightOfSession light_of(Session& session, int updates) {
+    LightOfSession result;
+    for (int i = 0; i < updates; ++i) {
+        const Session::Update update = session.update();
+        result.dark += update.overlay.lit ? 0 : 1;
+        result.brightest = 0;
+        for (const Rgb& c : update.overlay.picture.pixels)
+            result.brightest = std::max({result.brightest, static_cast<int>(c[0]), static_cast<int>(c[1])});
+        if (!update.light) continue;
+        ++result.looks;
+        result.last = *update.light;
+    }
+    return result;
+}
+
+TEST_F(WholeChain, InADarkRoomTheLightIsDimmedAndMeasuredAsWell) {
+    simulation::SimulatedRig room(*volume_, {}, papers_room(1));
+    const CaseDrawing drawing(prepared_);
+    Session session(prepared_, drawing, room.calibration(), room.projector(), room.cameras(), room.clock());
+    session.scan();
+    ASSERT_EQ(session.find_patient().verdict, Verdict::yes);
+    const LightOfSession usual = light_of(session, 60);
+    room.set_lamps(0.03, 4);  // a tenth of the lamps, and cameras that see the markers all the same
+    const LightOfSession at_first = light_of(session, 4), dark = light_of(session, 120);
+    EXPECT_EQ(usual.dark + at_first.dark + dark.dark, 0);
+    EXPECT_EQ(usual.brightest, at_first.brightest) << "under the usual lamps all of the light";
+    EXPECT_LT(dark.brightest, 0.9 * usual.brightest);
+    EXPECT_GT(dark.last.brighter, 2) << "and stands out all the same";
+    EXPECT_GE(dark.last.seen_share(), at_first.last.seen_share());
+    EXPECT_LT(dark.last.median_mm, usual.last.median_mm + 0.1);
+    room.set_lamps(0.2);
+    EXPECT_EQ(light_of(session, 120).brightest, usual.brightest) << "when the lamps go on again";
+}
+
 TEST_F(WholeChain, LandmarksOnTheScanCheckTheMatch) {
     simulation::SimulatedRig room(*volume_, {}, papers_room(2));
     const CaseDrawing drawing(prepared_);

@@ -132,13 +132,29 @@ TEST(CheckPlan, ARiskStructureOnTheOtherSideThanItsNameSaysIsStopped) {
 TEST(CheckPlan, OnlyWordsThatMeanASideClaimOne) {
     for (const char* name :
          {"left", "Left burr hole", "B1 LINKS", "trajectory-links", "L frontal", "T3_L", "incision gauche",
-          "Трепанация ЛЕВАЯ", "Скуловая дуга слева", "Левого уха", "Лівий отвір", "Bohrloch li.", "TrepLeft2",
-          "VÄNSTER sida", "左側頭", "왼쪽 구멍", "ثقب أيسر", "Craniotomie–gauche"})
+          "Трепанация ЛЕВАЯ", "Скуловая дуга слева", "Левого уха", "Лівий отвір", "Bohrloch li.", "Lt frontal",
+          "TrepLeft2", "VÄNSTER sida", "左側頭", "왼쪽 구멍", "ثقب أيسر", "Craniotomie–gauche"})
         EXPECT_EQ(side_named(name), Side::left) << name;
-    for (const char* name :
-         {"right", "rechts", "R temporal", "Entry R", "dexter-2", "Правая трепанация", "Трепанация правая",
-          "Bohrloch re.", "Trepan-rt", "Burr hole (rt)", "Foramen dext.", "NearRight", "Otwór prawy", "HÖGER",
-          "Foro destro", "右耳", "오른쪽", "الأذن اليمنى", "Sağ taraf: delik sağ"})
+    for (const char* name : {"right",
+                             "rechts",
+                             "R temporal",
+                             "Entry R",
+                             "dexter-2",
+                             "Правая трепанация",
+                             "Трепанация правая",
+                             "Bohrloch re.",
+                             "Trepan-rt",
+                             "Rt frontal",
+                             "Burr hole (rt)",
+                             "Foramen dext.",
+                             "NearRight",
+                             "Otwór prawy",
+                             "HÖGER",
+                             "Foro destro",
+                             "右耳",
+                             "오른쪽",
+                             "الأذن اليمنى",
+                             "Sağ taraf: delik sağ"})
         EXPECT_EQ(side_named(name), Side::right) << name;
     for (const char* name :
          {"",         "L",          "R",           "L1",        "R2D2",    "Rand",        "cleft",

@@ -52,7 +52,19 @@ TEST(LightGate, LightThatIsFoundFarAsideGoesOut) {
     const auto ruling = after(gate, now, 1, far);
     EXPECT_TRUE(ruling.stop);
     EXPECT_EQ(ruling.headline, "Dark: the light lay 6.2 mm beside the plan.");
+    EXPECT_EQ(ruling.off_mm, 6.2);
     EXPECT_TRUE(after(gate, now, 10, seen_at(0.1)).stop) << "until it is asked for again";
+}
+
+/// Some strokes are mistaken near their place meanwhile: what they say is not the light's error.
+TEST(LightGate, TheErrorOfLightThatIsFoundFarAsideIsHowFar) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    LightCheck far = seen_at(0.35, 8, 40);
+    far.far_mm = 8;
+    EXPECT_EQ(after(gate, now, 1, far).off_mm, 8);
+    EXPECT_EQ(after(gate, now, 2, far).off_mm, 8);
 }
 
 /// All that the cameras can see they see, and it is too little: that is not light that is not seen.

@@ -165,6 +165,20 @@ TEST_F(OverlayTest, TheEndOfTheLoopIsDark) {
 
 // T_global = T_cur T_ini, and not the other way round: a patient that lies turned and is then turned again about
 // another axis.
+TEST_F(OverlayTest, IsAsBrightAsItIsSaid) {
+    OverlayLoop loop(projector, clock, renderer, drawing, registration, {});
+    const auto brightest = [&] {
+        int most = 0;
+        for (const Rgb& c : loop.step(pose()).picture.pixels) most = std::max<int>(most, c[1]);
+        return most;
+    };
+    const int all = brightest();
+    loop.set_brightness(0.5);
+    EXPECT_NEAR(brightest(), all * std::pow(0.5, 1 / 2.2), 1.5) << "half of the light, by a projector's gamma of 2.2";
+    loop.set_brightness(1);
+    EXPECT_EQ(brightest(), all);
+}
+
 TEST_F(OverlayTest, DrawsForTheInitialPoseFirstAndTheMovementAfterIt) {
     const Eigen::AngleAxisd lies(0.4, Vector3d::UnitZ()), turns(0.1, Vector3d::UnitX());
     registration.patient_from_ct = Eigen::Translation3d(0, 0, 700) * RigidTransform(lies);

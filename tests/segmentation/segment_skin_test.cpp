@@ -74,6 +74,9 @@ TEST(SegmentSkin, SaysAThresholdAsItIsTyped) {
     EXPECT_EQ(threshold_text(-87.44), "-87.4");
     EXPECT_EQ(threshold_text(0.21449), "0.214");
     EXPECT_EQ(threshold_text(0), "0");
+    EXPECT_EQ(threshold_text(0.00002), "0.00002");
+    EXPECT_EQ(threshold_text(-0.000003125), "-0.00000313");
+    EXPECT_EQ(threshold_text(9.996), "10");
 }
 
 TEST(TriangulateSkin, LiesOnTheCrossingOfABareHead) {

@@ -14,6 +14,7 @@
 
 #include "app/windows/operator_window.h"
 #include "fake_model.h"
+#include "keyboard_owner.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
 #include "projection/projector_window.h"
@@ -87,6 +88,9 @@ void run(const std::string& folder) {
 
     for (int i = 0; i < 3; ++i) operator_window.frame(model), projector.refresh();
     const RgbImage before = screen(folder, "1_before");
+    const std::string keyboard = test::keyboard_owner();
+    expect(keyboard != "Planlight projector",
+           "the projector's window has not taken the keyboard (" + keyboard + " has it)");
     expect(different(before, second, black) == 0, "the second monitor is black at first");
 
     const Instant asked = clock.now(), lit = projector.show(picture, clock.now() + seconds(60));

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "planning_io/types/error.h"
 
@@ -38,6 +40,30 @@ TEST(ModalityByValues, AnMrFromWhich1024WasTakenIsNoCtAndItsHeadIsThere) {
     ASSERT_EQ(mr.notes.size(), 1U);
     EXPECT_NE(mr.notes[0].find("hardly anything in it is denser"), std::string::npos) << mr.notes[0];
     EXPECT_NO_THROW(check_for_skin(mr, "mr.nii"));
+}
+
+/// An MR whose voxels outside of a circle were set to -1024.
+TEST(ModalityByValues, PaddingOfAnMrIsNoAirOfACt) {
+    std::mt19937 random(3);
+    Volume mr;
+    mr.size = {40, 40, 40};
+    for (int k = 0; k < 40; ++k)
+        for (int j = 0; j < 40; ++j)
+            for (int i = 0; i < 40; ++i) {
+                const double r = std::hypot(i - 19.5, std::hypot(j - 19.5, k - 19.5));
+                const float noise = static_cast<float>(random() % 20);
+                mr.values.push_back(std::hypot(i - 19.5, j - 19.5) > 19 ? -1024.F : (r < 13 ? 300.F : 0.F) + noise);
+            }
+    Volume same_ct = mr;  // as a CT: the air inside the circle is air
+    for (float& v : same_ct.values)
+        if (v >= 0 && v < 20) v -= 1000;
+    tell_modality_by_values(mr);
+    EXPECT_EQ(mr.modality, "MR");
+    EXPECT_GE(*std::min_element(mr.values.begin(), mr.values.end()), 0);
+    ASSERT_EQ(mr.notes.size(), 2U);
+    EXPECT_NE(mr.notes[0].find("padding of an MR"), std::string::npos) << mr.notes[0];
+    tell_modality_by_values(same_ct);
+    EXPECT_EQ(same_ct.modality, "CT");
 }
 
 TEST(ModalityByValues, NothingButAirHasNoSkin) {

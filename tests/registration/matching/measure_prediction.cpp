@@ -158,10 +158,10 @@ void log_case(std::ostream& log, unsigned seed, const Case& done) {
     const RegistrationResult& r = done.found;
     double bound_mm = 0;
     for (const Target& t : done.targets) bound_mm = std::max(bound_mm, t.bound_mm);
-    log << fmt::format("{},{},{},{:.2f},{:.2f},{:.2f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},\"{}\"\n", seed,
-                       done.movement, static_cast<int>(done.verdict), done.moved_mm, done.noise_mm, done.strays,
-                       r.skin_movement_mm, r.skin_offset_mm, r.residual_rms_mm, r.weakest_sigma_mm, r.inlier_fraction,
-                       done.worst_error_mm(), bound_mm, fmt::join(r.reasons, "; "))
+    log << fmt::format("{},{},{},{:.2f},{:.2f},{:.2f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},\"{}\"\n",
+                       seed, done.movement, static_cast<int>(done.verdict), done.moved_mm, done.noise_mm, done.strays,
+                       r.skin_movement_mm, r.skin.spread_mm, r.skin_offset_mm, r.residual_rms_mm, r.weakest_sigma_mm,
+                       r.inlier_fraction, done.worst_error_mm(), bound_mm, fmt::join(r.reasons, "; "))
         << std::flush;
 }
 
@@ -176,7 +176,8 @@ int main(int argc, char** argv) {
     std::ofstream log;
     if (const char* file = std::getenv("PLANLIGHT_LOG")) {
         log.open(file);
-        log << "seed,movement,verdict,moved_mm,noise_mm,strays,skin_movement_mm,skin_offset_mm,residual_rms_mm,"
+        log << "seed,movement,verdict,moved_mm,noise_mm,strays,skin_movement_mm,skin_spread_mm,skin_offset_mm,residual_"
+               "rms_mm,"
                "weakest_sigma_mm,inlier_fraction,worst_error_mm,bound_mm,reasons\n";
     }
     std::map<std::string, std::vector<Target>> by_movement;

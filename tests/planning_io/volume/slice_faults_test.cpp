@@ -1,0 +1,71 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "planning_io/volume/volume_checks.h"
+
+// Volumes as scanners make them: a ball of tissue, with noise in every voxel.
+namespace planlight {
+namespace {
+
+constexpr int kSize = 64;
+
+float voxel_of_ball(int i, int j, double k, std::mt19937& random) {
+    std::normal_distribution<float> noise(0, 12);
+    const double r = std::hypot(i - 31.5, std::hypot(j - 31.5, k - 31.5));
+    return (r < 26 ? 40.F : -1000.F) + noise(random);
+}
+
+/// Slice k of the volume is that at `place(k)` of the ball.
+template <class Place>
+Volume stacked(int slices, const Place& place) {
+    std::mt19937 random(7);
+    Volume volume;
+    volume.size = {kSize, kSize, slices};
+    for (int k = 0; k < slices; ++k)
+        for (int j = 0; j < kSize; ++j)
+            for (int i = 0; i < kSize; ++i) volume.values.push_back(voxel_of_ball(i, j, place(k), random));
+    return volume;
+}
+
+TEST(SliceFaults, AWholeVolumeHasNone) {
+    Volume volume = stacked(kSize, [](int k) { return k; });
+    note_slice_faults(volume);
+    EXPECT_TRUE(volume.notes.empty()) << volume.notes.front();
+}
+
+TEST(SliceFaults, MissingSlicesAreSaidWithTheirPlace) {
+    Volume volume = stacked(kSize - 6, [](int k) { return k < 15 ? k : k + 6; });
+    note_slice_faults(volume);
+    ASSERT_EQ(volume.notes.size(), 1U);
+    EXPECT_NE(volume.notes[0].find("its slices 15 and 16 along axis 3"), std::string::npos) << volume.notes[0];
+    EXPECT_NE(volume.notes[0].find("missing between them"), std::string::npos) << volume.notes[0];
+}
+
+TEST(SliceFaults, SlicesThatAreThereTwiceAreSaid) {
+    Volume volume = stacked(kSize, [](int k) { return k; });
+    const auto slab = static_cast<std::ptrdiff_t>(volume.index(0, 0, 1));
+    const std::vector<float> again(volume.values.begin() + 20 * slab, volume.values.begin() + 26 * slab);
+    volume.values.insert(volume.values.begin() + 26 * slab, again.begin(), again.end());
+    volume.size[2] += 6;
+    note_slice_faults(volume);
+    ASSERT_EQ(volume.notes.size(), 1U);
+    EXPECT_NE(volume.notes[0].find("6 of its 70 slices along axis 3 are there twice"), std::string::npos)
+        << volume.notes[0];
+    EXPECT_NE(volume.notes[0].find("from slice 27 on"), std::string::npos) << volume.notes[0];
+}
+
+TEST(SliceFaults, AComputedVolumeMayHaveAnyNumberOfEqualSlices) {
+    Volume volume;
+    volume.size = {kSize, kSize, kSize};
+    for (int k = 0; k < kSize; ++k)
+        for (int j = 0; j < kSize; ++j)
+            for (int i = 0; i < kSize; ++i)
+                volume.values.push_back(std::hypot(i - 31.5, j - 31.5) < 20 ? 40.F : -1000.F);
+    note_slice_faults(volume);
+    EXPECT_TRUE(volume.notes.empty());
+}
+
+}  // namespace
+}  // namespace planlight
