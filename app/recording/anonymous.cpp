@@ -92,8 +92,15 @@ std::string utf8(const std::u32string& points) {
     return text;
 }
 
+/// A letter's one small form; the sigma that ends a Greek word is the other one.
+char32_t small_letter(char32_t c) {
+    constexpr char32_t kEndingSigma = U'\u03C2', kSigma = U'\u03C3';
+    const char32_t small = g_unichar_tolower(c);
+    return small == kEndingSigma ? kSigma : small;
+}
+
 std::u32string in_small_letters(std::u32string text) {
-    for (char32_t& c : text) c = g_unichar_tolower(c);
+    for (char32_t& c : text) c = small_letter(c);
     return text;
 }
 
@@ -203,14 +210,14 @@ void NamesLeftOut::add_items(const PlanDrawing& drawing) {
     for (std::size_t i = 0; i < drawing.items.size(); ++i) add(drawing.items[i].name, fmt::format("item {}", i + 1));
 }
 
-/// Each word of "MEIER^HANS" or "Dr. Hans Meier" for itself; of two letters and less it is found in too much, but two
-/// signs of Chinese are a name.
+/// Each word of "MEIER^HANS" or "Dr. Hans Meier" for itself; of two letters and less it is found in too much, but one
+/// sign of Chinese is a name.
 void NamesLeftOut::add_person(const std::string& name) {
-    constexpr std::size_t kLeast = 3, kLeastOfWideSigns = 2;
+    constexpr std::size_t kLeast = 3, kLeastOfWideSigns = 1;
     std::u32string part;
     for (const char32_t c : code_points(name) + U' ') {
         if (is_of_a_word(c)) {
-            part += static_cast<char32_t>(g_unichar_tolower(c));
+            part += small_letter(c);
             continue;
         }
         const bool letters =

@@ -117,7 +117,7 @@ TEST(RecorderTrouble, NamesNoFileInTheBannerAndDoesAtTheEnd) {
         while (recorder.trouble().empty()) std::this_thread::sleep_for(milliseconds(1));
         const std::string said = recorder.trouble();
         EXPECT_NE(said.find(takes ? "The disk did not confirm the recording: No space left on device;"
-                                  : "The recording stands still: No space left on device."),
+                                  : "The recording stands still: No space left on device"),
                   std::string::npos)
             << said;
         EXPECT_EQ(said.find('/'), std::string::npos) << said;
