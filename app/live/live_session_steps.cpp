@@ -283,6 +283,14 @@ std::string sentence_of_hidden(const Session& session) {
     return fmt::format("{} of {} items are hidden: they are not lit.", hidden.size(), session.drawing().items.size());
 }
 
+/// Empty where each item has its name, or its code, beside its light.
+std::string sentence_of_bare(const Session& session) {
+    const auto& items = session.drawing().items;
+    const auto bare = std::count_if(items.begin(), items.end(), [](const DrawnItem& item) { return !item.labelled; });
+    return bare == 0 ? std::string()
+                     : fmt::format("{} of {} items have no name beside their light.", bare, items.size());
+}
+
 /// `card_asked`: a card with the patient's name is to be lit until the light is verified.
 Status status_of(const Session& session, const Session::Update& update, const LightGate::Ruling& ruling,
                  bool card_asked) {
@@ -305,6 +313,8 @@ Status status_of(const Session& session, const Session::Update& update, const Li
         status.details.push_back(hidden);
         if (aligned) status.headline = "What is shown of the plan is on the skin.";
     }
+    if (const std::string bare = sentence_of_bare(session); aligned && !session.item_of_moment() && !bare.empty())
+        status.details.push_back(bare);
     return status;
 }
 

@@ -125,7 +125,7 @@ std::string course_html(const OperationFacts& facts) {
     double most_mm = 2.2;
     for (const auto& sample : facts.course) most_mm = std::max(most_mm, std::min(5.0, sample.off_mm));
     Chart chart({0, std::max(1.0, facts.lasted_s / unit_s), long_one ? "room clock, minutes" : "room clock, s", 8},
-                {0, most_mm, "light off its place (95 %), mm", 5}, 1100, 185);
+                {0, most_mm, "mm off (95 %)", 5}, 1100, 185);
     const std::size_t join = facts.course.size() / kMostPlaces + 1;
     Chart::Points points;
     for (std::size_t i = 0; i < facts.course.size(); i += join) {
