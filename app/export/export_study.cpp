@@ -43,10 +43,10 @@ DicomStudy study_of_case(const Case& the_case, const fs::path& series_folder, co
     return study;
 }
 
+/// All of them may show a name: of items where the head is drawn, labels and the card in the light.
 struct KeyPicture {
     std::string what;
     RgbImage picture;
-    bool words = true;  ///< labels, a name card: in the light, and so before the cameras
 };
 
 std::vector<KeyPicture> key_pictures(const Case& the_case, const CaseDrawing& drawing,
@@ -139,7 +139,7 @@ std::vector<std::string> export_into_study(const Case& the_case, const ExportedO
         name.number = 0;
         for (const KeyPicture& key : key_pictures(the_case, drawing, operation)) {
             ++name.number;
-            write_secondary_capture(study, name, key.what, key.picture, {true, key.words},
+            write_secondary_capture(study, name, key.what, key.picture, {true, true},
                                     next(fmt::format("picture-{}.dcm", name.number)));
         }
     });

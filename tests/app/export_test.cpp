@@ -121,8 +121,7 @@ TEST_F(Export, ThePdfIsOneAndThePictureHasItsPixels) {
 }
 
 TEST_F(Export, WhatShowsTheLightMayShowANameInIt) {
-    // The match and its error are drawn; cameras and projector hold the light, and so its labels and the name card.
-    const char* const wanted[] = {"NO", "NO", "YES", "YES", "YES"};
+    // Items are called by their names in the drawn ones, and in the light that cameras and projector hold.
     for (int i = 1; i <= 5; ++i) {
         gdcm::Reader reader;
         reader.SetFileName((exported() / ("picture-" + std::to_string(i) + ".dcm")).c_str());
@@ -130,7 +129,7 @@ TEST_F(Export, WhatShowsTheLightMayShowANameInIt) {
         gdcm::Attribute<0x0028, 0x0301> burned_in;
         burned_in.SetFromDataSet(reader.GetFile().GetDataSet());
         const std::string said = burned_in.GetValue();
-        EXPECT_EQ(said.substr(0, said.find(' ')), wanted[i - 1]) << "picture " << i;
+        EXPECT_EQ(said.substr(0, said.find(' ')), "YES") << "picture " << i;
         gdcm::Attribute<0x0028, 0x0302> features;
         features.SetFromDataSet(reader.GetFile().GetDataSet());
         EXPECT_EQ(std::string(features.GetValue()).substr(0, 3), "YES") << "a face, picture " << i;
