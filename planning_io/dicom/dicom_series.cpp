@@ -21,6 +21,7 @@
 #include "planning_io/files/header_text.h"
 #include "planning_io/files/memory_need.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/slice_faults.h"
 #include "planning_io/volume/volume_checks.h"
 
 namespace planlight {

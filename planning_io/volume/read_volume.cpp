@@ -14,6 +14,7 @@
 #include "planning_io/volume/mgh_file.h"
 #include "planning_io/volume/nifti_file.h"
 #include "planning_io/volume/nrrd_file.h"
+#include "planning_io/volume/slice_faults.h"
 #include "planning_io/volume/volume_checks.h"
 #include "planning_io/volume/volume_in_child.h"
 

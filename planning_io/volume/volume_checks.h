@@ -25,12 +25,6 @@ bool has_air_in_hu(const Volume& volume, const std::vector<char>& left_out = {})
 /// one an MR. Noted in `volume.notes`.
 void tell_modality_by_values(Volume& volume);
 
-/// Notes in `volume.notes`, for any axis: slices that are there twice, bit for bit, and neighbours that differ 2.5
-/// times as much as those around them, as where slices are missing: behind either the head is in the wrong place. Asked
-/// where neighbours differ by noise nearly everywhere, as those of a scanner do. At the outer four slices nothing is
-/// told.
-void note_slice_faults(Volume& volume);
-
 /// Throws InputError when there can be no skin in the volume: one value only, nothing but air, no air, or a body that
 /// fills the volume to all of its sides (a cut-out of the head's inside).
 void check_for_skin(const Volume& volume, const std::filesystem::path& file);

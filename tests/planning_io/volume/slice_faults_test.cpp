@@ -1,9 +1,9 @@
+#include "planning_io/volume/slice_faults.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
-
-#include "planning_io/volume/volume_checks.h"
 
 // Volumes as scanners make them: a ball of tissue, with noise in every voxel.
 namespace planlight {
