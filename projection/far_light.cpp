@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "planning_io/types/statistics.h"
+#include "projection/bilinear.h"
 #include "projection/biquadratic.h"
 
 namespace planlight {
@@ -98,16 +98,9 @@ struct ShiftRow {
     std::size_t from = 0, count = 0;  ///< among all shifts
 };
 
-constexpr double kOutside = std::numeric_limits<double>::quiet_NaN();
-
-/// As `bilinear`, NaN outside of the picture: asked some hundred thousand times a look.
-double grey_at(const GrayImage& picture, double x, double y) {
-    if (!(x >= 0 && y >= 0 && x < picture.width - 1 && y < picture.height - 1)) return kOutside;
-    const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
-    const double u = x - static_cast<double>(i), v = y - static_cast<double>(j);
-    const std::uint8_t* at = picture.pixels.data() + j * static_cast<std::size_t>(picture.width) + i;
-    const std::uint8_t* below = at + picture.width;
-    return (1 - v) * ((1 - u) * at[0] + u * at[1]) + v * ((1 - u) * below[0] + u * below[1]);
+/// NaN where one of them is.
+double larger_of(double a, double b) {
+    return (a + b + std::abs(a - b)) / 2;
 }
 
 /// The light across the stroke's direction at each shift, grey: the stroke's place less the skin to both sides of it.
@@ -127,10 +120,10 @@ void find_ridges(const Stretch& stretch, std::size_t camera, const GrayImage& pi
                 const double u = row.first_u + static_cast<double>(k) * row.step;
                 const double x = middle.x() + u * (slope.x() + u * bend.x()),
                              y = middle.y() + u * (slope.y() + u * bend.y());
-                const double left = grey_at(picture, x - aside.x(), y - aside.y()),
-                             right = grey_at(picture, x + aside.x(), y + aside.y());
-                const double beside = stretch.one_side || left < right ? right : left;
-                greys[row.from + k] += grey_at(picture, x, y) - beside + 0 * left;  // NaN where one is
+                const double left = bilinear_or_nan(picture, x - aside.x(), y - aside.y()),
+                             right = bilinear_or_nan(picture, x + aside.x(), y + aside.y());
+                greys[row.from + k] +=
+                    bilinear_or_nan(picture, x, y) - (stretch.one_side ? right : larger_of(left, right));
             }
         }
     }

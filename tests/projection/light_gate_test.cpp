@@ -41,30 +41,32 @@ LightGate::Ruling after(LightGate& gate, Instant& now, int updates, const std::o
     return ruling;
 }
 
+/// What a look says of light found as one `far_mm` aside, while `seen` of 40 strokes are mistaken near their place.
+LightCheck found_far(double far_mm, double near_mm, int seen) {
+    LightCheck far = seen_at(near_mm, seen, 40);
+    far.far_mm = far_mm;
+    return far;
+}
+
 /// Nothing is seen near its place, and all of it farther off: that is wrong light, not light that is covered.
 TEST(LightGate, LightThatIsFoundFarAsideGoesOut) {
     LightGate gate;
     Instant now{};
     gate.verify(now);
-    LightCheck far = seen_at(0, 0, 40);
-    far.far_mm = 6.2;
-    EXPECT_FALSE(after(gate, now, 1, far).stop) << "once may be chance";
-    const auto ruling = after(gate, now, 1, far);
+    EXPECT_FALSE(after(gate, now, 1, found_far(6.2, 0, 0)).stop) << "once may be chance";
+    const auto ruling = after(gate, now, 1, found_far(6.2, 0, 0));
     EXPECT_TRUE(ruling.stop);
     EXPECT_EQ(ruling.headline, "Dark: the light lay 6.2 mm beside the plan.");
     EXPECT_EQ(ruling.off_mm, 6.2);
     EXPECT_TRUE(after(gate, now, 10, seen_at(0.1)).stop) << "until it is asked for again";
 }
 
-/// Some strokes are mistaken near their place meanwhile: what they say is not the light's error.
+/// Strokes that are mistaken near their place do not say how far off it is.
 TEST(LightGate, TheErrorOfLightThatIsFoundFarAsideIsHowFar) {
     LightGate gate;
     Instant now{};
-    gate.verify(now);
-    LightCheck far = seen_at(0.35, 8, 40);
-    far.far_mm = 8;
-    EXPECT_EQ(after(gate, now, 1, far).off_mm, 8);
-    EXPECT_EQ(after(gate, now, 2, far).off_mm, 8);
+    EXPECT_EQ(after(gate, now, 1, found_far(8, 0.35, 8)).off_mm, 8);
+    EXPECT_EQ(after(gate, now, 2, found_far(8, 0.35, 8)).off_mm, 8);
 }
 
 /// All that the cameras can see they see, and it is too little: that is not light that is not seen.
