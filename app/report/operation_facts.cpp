@@ -113,8 +113,10 @@ private:
         if (what == "asked") take_call(event);
         if (what == "pressed" && event.value("action", "") == "confirm") take_confirming_press();
         if (what == "pressed" && event.value("action", "") == "dark") say("DARK was pressed.", event);
-        if (what == "pressed" && event.value("action", "") == "projector_lost")
+        if (what == "pressed" && event.value("action", "") == "projector_lost") {
+            ++facts_.projector_lost;
             facts_.refusals.push_back({at_s_, "", "The projector was lost, and the session made dark.", true});
+        }
         if (what == "refused")
             facts_.refusals.push_back({at_s_, "", event.value("call", "") + ": " + event.value("why", ""), false});
         if (what == "skin_checked") take_skin_check(event);

@@ -90,17 +90,13 @@ std::string items_html(const OperationFacts& facts) {
     return html + "</table><p class=\"muted\">" + kWhatIsMeasured + " " + in_terms_of_f2554(facts) + "</p>";
 }
 
-bool projector_was_lost(const OperationFacts& facts) {
-    return std::any_of(facts.refusals.begin(), facts.refusals.end(), [](const OperationEvent& e) { return e.grave; });
-}
-
 std::string time_html(const OperationFacts& facts) {
     std::string html = fmt::format(
         "<h2>Light and darkness</h2><p>Light for {}: {} of it aligned (measured where it belongs, and verified), {} to "
         "be "
         "looked at. {} updates.</p>",
         duration_text(facts.lit_s), duration_text(facts.aligned_s), duration_text(facts.look_s), facts.updates);
-    if (facts.dark.empty() && !projector_was_lost(facts))
+    if (facts.dark.empty() && facts.projector_lost == 0)
         return html + "<p>While the plan was followed it was never dark by itself.</p>";
     if (facts.dark.empty()) return html;
     std::vector<std::pair<std::string, std::pair<int, double>>> dark(facts.dark.begin(), facts.dark.end());

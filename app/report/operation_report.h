@@ -85,6 +85,7 @@ struct OperationFacts {
     std::vector<double> light_off_mm;   ///< of all of the light (95 % of it lies within), each measurement
     std::optional<OperationMoment> moment;
     int updates = 0, verified = 0, stops = 0;
+    int projector_lost = 0;       ///< times
     int verified_by_program = 0;  ///< of `verified`: without anybody's press (`--autoplay`)
     std::uint64_t chunks = 0, bytes = 0, kept_frames = 0;
     std::uint64_t lost_chunks = 0;  ///< that the disk did not take, by LOST and by the recording's last word
