@@ -109,10 +109,14 @@ std::vector<std::string> unlit_warnings(const PlanDrawing& drawing) {
     return sentences;
 }
 
+long bare_items(const PlanDrawing& drawing) {
+    return std::count_if(drawing.items.begin(), drawing.items.end(),
+                         [](const DrawnItem& item) { return !item.labelled; });
+}
+
 std::vector<std::string> evidence_of_labels(const PlanDrawing& drawing) {
     std::vector<std::string> sentences;
-    const auto bare =
-        std::count_if(drawing.items.begin(), drawing.items.end(), [](const DrawnItem& item) { return !item.labelled; });
+    const long bare = bare_items(drawing);
     if (bare > 0)
         sentences.push_back(fmt::format(
             "The plan is crowded: {} of {} items have no name beside their light. Light one alone to see which it is.",

@@ -23,6 +23,9 @@ void name_rows(const PlanDrawing& drawing, std::vector<PlanRow>& rows);
 
 /// What the light should say of risk structures and has no room for, a sentence each.
 std::vector<std::string> unlit_warnings(const PlanDrawing& drawing);
+/// How many items have neither name nor code beside their light: the plan is crowded.
+long bare_items(const PlanDrawing& drawing);
+
 /// What a person must know of the light's labels that nothing on the skin says: items without one, and those.
 std::vector<std::string> evidence_of_labels(const PlanDrawing& drawing);
 

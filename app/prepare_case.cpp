@@ -98,8 +98,7 @@ void warn_of_risk(const PlanDrawing& drawing, const PreparationWatcher& watcher,
 
 /// Items that have no skin for their name, or for nothing at all.
 void warn_of_labels(const PlanDrawing& drawing, const PreparationWatcher& watcher, Case& the_case) {
-    const auto bare =
-        std::count_if(drawing.items.begin(), drawing.items.end(), [](auto& item) { return !item.labelled; });
+    const long bare = bare_items(drawing);
     std::string by_code;
     for (const DrawnItem& item : drawing.items)
         if (item.lit_by_code) by_code += fmt::format("{}{} is {}", by_code.empty() ? "" : ", ", item.code, item.name);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/case_model.h"
+#include "app/live/following_status.h"
 #include "app/live/scene_of_session.h"
 #include "planning_io/types/error.h"
 
@@ -137,10 +138,7 @@ void ReplayView::updated(const Session& session, const Session::Update& update) 
         show_lit(session);
         change([&](OperatorModel& m) {
             for (std::size_t i = 0; update.light && i < std::min(m.rows.size(), update.light->items.size()); ++i)
-                m.rows[i].light_off_mm =
-                    update.light->items[i].told()
-                        ? std::optional(std::max(update.light->items[i].off_mm, update.light->far_mm.value_or(0)))
-                        : std::nullopt;
+                m.rows[i].light_off_mm = item_off_mm(*update.light, i);
         });
     } catch (const std::exception&) {  // no memory: the next update is shown
     }

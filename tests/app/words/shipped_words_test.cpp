@@ -99,6 +99,7 @@ constexpr const char* kSaying[] = {
     "app/live/guided_calibration.cpp",
     "app/live/live_session.cpp",
     "app/live/live_session_run.cpp",
+    "app/live/following_status.cpp",
     "app/live/live_session_steps.cpp",
     "app/live/resume_steps.cpp",
     "app/live/session_states.cpp",
