@@ -1,6 +1,6 @@
 // How soon a fault of the light is noticed, and whether it is named rightly: whole sessions in simulated rooms, with
 // faults drawn at random while the plan is on the skin.
-// measure_light_faults paper|modern FIRST_ROOM ROOMS DRAWS_A_FAULT [FAULT] [--list]
+// measure_light_faults paper|modern FIRST_ROOM ROOMS DRAWS_A_FAULT [FAULT,FAULT...] [--list]
 //
 // Faults: offset (the picture 0.5 mm aside), late (20 ms, the head moving), slip (1 mm of one marker), projector and
 // camera (turned by 0.05 degrees about an axis square to its sight), covered (no light), window (another picture),
@@ -15,6 +15,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <sstream>
 #include <string>
 
 #include "app/evaluation/distribution.h"
@@ -252,7 +253,11 @@ int main(int argc, char** argv) {
     if (!test::example_patient()) return 77;
     std::vector<std::string> faults{"offset",  "late",   "slip", "projector", "camera",
                                     "covered", "window", "cap",  "good"};
-    if (words.size() > 4) faults = {words[4]};
+    if (words.size() > 4) {
+        faults.clear();
+        std::istringstream named(words[4]);
+        for (std::string fault; std::getline(named, fault, ',');) faults.push_back(fault);
+    }
     const Volume volume = read_volume(*test::example_patient());
     const Preparation prepared = prepare_case(
         volume, read_plan(std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json"), {}, {}, "2001-10-14");
