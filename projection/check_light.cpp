@@ -151,8 +151,8 @@ struct LightChecker::Parts {
     std::vector<Sight> sights;  ///< of the segments, then of the patches
     std::size_t turn = 0;
     int frame = 0;
-    bool nothing_far = false,
-         passed_over = false;  ///< by the last search of all the light as one; now it is not searched
+    bool nothing_far = false;  ///< by the last search of all the light as one
+    bool passed_over = false;  ///< that search was left out in the last look
     std::optional<RigidTransform> last{};
 
     Sight sight_of(const StrokeSegment& segment, const RigidTransform& rig_from_ct) const;

@@ -259,6 +259,7 @@ std::string resumed(const Session& session, const ResumeCheck& check) {
                  {"bound_mm", check.bound_mm},
                  {"items", item_names(session)},
                  {"predicted_mm", predicted_errors_mm(session.plan(), found)}};
+    add_codes(session, json);
     add_risks(session, json);
     return text_of(json);
 }

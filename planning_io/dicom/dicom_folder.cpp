@@ -40,12 +40,9 @@ std::string defaced(vtkDICOMMetaData* meta) {
     for (std::size_t i = 0; items && i < codes.GetNumberOfValues(); ++i)
         if (plain(items[i].Get(DC::CodeValue).AsString()) == "113102")
             return "de-identification by code 113102, Clean Recognizable Visual Features";
-    const std::string method =
-        lower_case(text_at(meta, vtkDICOMTag(0x0012, 0x0063)) + " " + text_at(meta, DC::SeriesDescription));
-    for (const char* word :
-         {"deface", "defacing", "reface", "mask_face", "quickshear", "skull strip", "skull-strip", "skullstrip"})
-        if (method.find(word) != std::string::npos) return std::string("\"") + word + "\" in its description";
-    return "";
+    const std::string word =
+        defacing_word_in(text_at(meta, vtkDICOMTag(0x0012, 0x0063)) + " " + text_at(meta, DC::SeriesDescription));
+    return word.empty() ? "" : "\"" + word + "\" in its description";
 }
 
 /// How the file says that its picture was made of several slices (DICOM PS3.3 C.7.6.1.1.2 and C.8.16.1): maximum and

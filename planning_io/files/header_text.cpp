@@ -124,13 +124,18 @@ fs::path data_file_beside(const fs::path& header, const std::string& name) {
     return data;
 }
 
+std::string defacing_word_in(const std::string& description) {
+    const std::string said = lower_case(description);
+    for (const char* word : {"deface", "defacing", "reface", "mask_face", "quickshear", "skull-strip", "skull strip",
+                             "skullstrip", "skull_strip"})
+        if (said.find(word) != std::string::npos) return word;
+    return "";
+}
+
 void check_not_defaced(const fs::path& file, const std::string& description) {
-    const std::string said = lower_case(file.filename().string() + " " + description);
-    for (const char* word :
-         {"deface", "defacing", "reface", "mask_face", "quickshear", "skull-strip", "skullstrip", "skull_strip"})
-        if (said.find(word) != std::string::npos)
-            throw InputError(file, std::string("says that the face or the skin was taken away (\"") + word + "\")",
-                             "Give the series as the scanner made it: the light is aligned by the skin of the face.");
+    if (const std::string word = defacing_word_in(file.filename().string() + " " + description); !word.empty())
+        throw InputError(file, "says that the face or the skin was taken away (\"" + word + "\")",
+                         "Give the series as the scanner made it: the light is aligned by the skin of the face.");
 }
 
 }  // namespace planlight

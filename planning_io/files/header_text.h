@@ -42,6 +42,10 @@ std::string counted(long long count, const std::string& noun);
 /// there.
 std::filesystem::path data_file_beside(const std::filesystem::path& header, const std::string& name);
 
+/// The first word in it, in any case of letters, that names a program or a step that takes faces or skin away
+/// ("deface", "quickshear"); empty: there is none.
+std::string defacing_word_in(const std::string& description);
+
 /// InputError when a file's name or description says that its face was removed.
 void check_not_defaced(const std::filesystem::path& file, const std::string& description);
 

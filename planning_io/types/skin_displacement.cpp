@@ -8,6 +8,9 @@
 #include <limits>
 #include <stdexcept>
 #include <unordered_map>
+#include <vector>
+
+#include "planning_io/types/statistics.h"
 
 namespace planlight {
 namespace {
@@ -26,6 +29,13 @@ void check(const SkinDisplacement& d) {
 }
 
 }  // namespace
+
+double spread_of_skin_mm(const SkinDisplacement& displacement) {
+    if (!displacement.known()) return 0;
+    std::vector<double> noise_mm2;
+    for (const auto& place : displacement.places) noise_mm2.push_back(place.sigma_mm * place.sigma_mm);
+    return std::sqrt(std::max(0.0, displacement.spread_mm * displacement.spread_mm - median(std::move(noise_mm2))));
+}
 
 struct SkinDisplacementField::Parts {
     using Near = std::pair<double, const SkinDisplacement::Place*>;  // squared distance, mm^2

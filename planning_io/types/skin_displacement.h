@@ -24,6 +24,10 @@ struct SkinDisplacement {
     bool known() const { return !places.empty(); }
 };
 
+/// What of the spread is the skin's: without the noise of the scan, which is in each place's sigma. 0 when all may be
+/// noise.
+double spread_of_skin_mm(const SkinDisplacement& displacement);
+
 /// The displacement at any point: the posterior mean of a Gaussian process with the offset as its mean and an
 /// exponential covariance, from the places round the point (local kriging: Cressie 1993, 3.2). Off the scan it goes
 /// back to the offset, and its sigma up to the spread.

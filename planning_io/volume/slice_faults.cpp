@@ -96,7 +96,8 @@ std::pair<int, std::size_t> repeated_in(const SliceRow& row) {
 }
 
 /// Where neighbours differ far more than those around them do: the second of the two, and how many times as much.
-/// Without a fault 1.3 at most along the slices of 23 heads, 2.1 along other axes; 4.0 where 9 mm are missing.
+/// Without a fault 1.3 at most along the slices of 23 heads, 2.1 along other axes; 4.0 where 9 mm are missing
+/// (`measure_heads`, column "jumps").
 std::pair<std::size_t, double> jump_in(const SliceRow& row) {
     constexpr std::size_t kAround = 4;
     constexpr double kLeastOfUsual = 0.3;
@@ -130,6 +131,13 @@ void note_slice_faults(Volume& volume) {
                 "series again",
                 second, second + 1, axis + 1, times));
     }
+}
+
+std::array<double, 3> largest_slice_jumps(const Volume& volume) {
+    std::array<double, 3> jumps{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (const SliceRow row = row_along(volume, axis); is_of_a_scanner(row)) jumps[axis] = jump_in(row).second;
+    return jumps;
 }
 
 }  // namespace planlight

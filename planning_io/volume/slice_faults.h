@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "planning_io/types/volume.h"
 
 namespace planlight {
@@ -9,5 +11,9 @@ namespace planlight {
 /// where neighbours differ by noise nearly everywhere, as those of a scanner do. At the outer four slices nothing is
 /// told.
 void note_slice_faults(Volume& volume);
+
+/// Along each axis, how many times as much two neighbours differ as those around them, where they do the most; 0 along
+/// an axis whose neighbours do not differ by noise, or where all around is plain. For tables of volumes.
+std::array<double, 3> largest_slice_jumps(const Volume& volume);
 
 }  // namespace planlight

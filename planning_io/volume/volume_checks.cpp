@@ -77,30 +77,28 @@ int sides_with_air(const Volume& volume, double level) {
 }
 
 /// Of a volume whose file does not say what it is: what was set far below all else, and is no air of a CT, for that is
-/// of one value and the least of the others is 0 or above, with air of its own as an MR has it. False: nothing was
-/// changed.
-bool fill_padding(Volume& volume) {
+/// of one value and the least of the others is 0 or above, with air of its own as an MR has it.
+void fill_padding(Volume& volume) {
     constexpr float kFarBelow = 500;
     constexpr double kLeastAir = 0.1, kDark = 0.1;
     const float least = *std::min_element(volume.values.begin(), volume.values.end());
-    if (least > kAirBelow_hu) return false;
+    if (least > kAirBelow_hu) return;
     float next = std::numeric_limits<float>::max();
     for (const float v : volume.values)
         if (v > least) next = std::min(next, v);
-    if (next < 0 || next - least < kFarBelow || next == std::numeric_limits<float>::max()) return false;
+    if (next < 0 || next - least < kFarBelow || next == std::numeric_limits<float>::max()) return;
     std::vector<float> others;
     for (const float v : sample_of(volume))
         if (v > least) others.push_back(v);
-    if (others.size() < 1000) return false;
+    if (others.size() < 1000) return;
     const double bright = quantile(std::vector<double>(others.begin(), others.end()), 0.99);
     const auto dark = std::ranges::count_if(others, [&](float v) { return v - next < kDark * (bright - next); });
-    if (static_cast<double>(dark) < kLeastAir * static_cast<double>(others.size()) || bright <= next) return false;
+    if (static_cast<double>(dark) < kLeastAir * static_cast<double>(others.size()) || bright <= next) return;
     std::ranges::replace(volume.values, least, next);
     volume.notes.push_back(fmt::format(
         "its voxels of exactly {:.0f} are no air of a CT, for nothing else lies below {:.0f}: they were taken "
         "for the padding of an MR",
         least, next));
-    return true;
 }
 
 }  // namespace

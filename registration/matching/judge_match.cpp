@@ -98,13 +98,13 @@ void judge_fine_match(const RegistrationSettings& settings, const FineMatch& fin
         fmt::format("the skin has moved by {:.1f} mm (rms) since the CT, and a part of that can look like a head that "
                     "lies otherwise: look at the light where skin lies close on bone",
                     result.skin_movement_mm));
+    const double spread_mm = spread_of_skin_mm(result.skin);
     judgement.ask_if(
-        result.skin.known() && result.skin_movement_mm <= settings.max_skin_movement_mm &&
-            result.skin.spread_mm > settings.max_skin_spread_mm,
+        result.skin_movement_mm <= settings.max_skin_movement_mm && spread_mm > settings.max_skin_spread_mm,
         fmt::format(
             "places of the skin lie {:.2f} mm (one sigma) off those of the CT: skin that sagged or swelled since "
             "can look like a head that lies otherwise: look at the light where skin lies close on bone",
-            result.skin.spread_mm));
+            spread_mm));
     const bool weak = fine.weakest.sigma_mm > settings.max_weakest_sigma_mm;
     judgement.ask_if(weak, fmt::format("the patient could {} by {:.1f} mm unnoticed: scan {} as well",
                                        fine.weakest.in_words, fine.weakest.sigma_mm, fine.weakest.advice));

@@ -49,7 +49,7 @@ struct RegistrationSettings {
     /// Of the skin over the bone, rms: a broad swelling of one side is taken for a head that lies otherwise, in part.
     /// Above: ask.
     double max_skin_movement_mm = 0.5;
-    /// Of the skin's places about its offset (`SkinDisplacement::spread_mm`). Skin that sagged is taken for a head that
+    /// Of the skin's places about its offset (`spread_of_skin_mm`). Skin that sagged is taken for a head that
     /// lies otherwise and little of it is left as movement; what the pose cannot follow still shows here. Above: ask.
     double max_skin_spread_mm = 0.33;
     bool mirror_test = true;           ///< match the mirrored scan too

@@ -193,8 +193,14 @@ void add_slices(std::vector<VolumeCase>& list) {
         code.text(0x00080104, "LO", "Clean Recognizable Visual Features Option");
         o.items(0x00120064, {code});
     }));
-    list.push_back(slices("a defaced head, by its description", "face was taken away",
-                          [](DicomObject& o) { o.text(0x0008103e, "LO", "T1 defaced"); }));
+    for (const char* word : {"T1 defaced", "T1 MPRAGE reface", "pydefacing", "Quickshear"})
+        list.push_back(slices(fmt::format("a defaced head, by its description ({})", word), "face was taken away",
+                              [=](DicomObject& o) { o.text(0x0008103e, "LO", word); }));
+    for (const char* type :
+         {"DERIVED\\SECONDARY\\MIP", "DERIVED\\PRIMARY\\PROJECTION IMAGE\\MINIP", "DERIVED\\SECONDARY\\SUBTRACTION"})
+        list.push_back(slices(fmt::format("made of several slices, by its Image Type ({})", type),
+                              "no slice of the patient but made of several",
+                              [=](DicomObject& o) { o.text(0x00080008, "CS", type); }));
     list.push_back(slices("no skin: one value only", "no skin", [](DicomObject& o) { fill(o, 24); }));
     list.push_back(slices("no skin: nothing but air", "no skin",
                           [](DicomObject& o) { fill(o, 24), o.elements[kPixels].bytes[64 * 64] = 30; }));
@@ -311,6 +317,8 @@ void add_formats(std::vector<VolumeCase>& list) {
     list.push_back(nifti("half of a pair", "half of a pair", [](std::string& h) { h[345] = 'i'; }));
     list.push_back(nifti("a description that says it was defaced", "taken away",
                          [](std::string& h) { h.replace(148, 9, "pydefaced"); }));
+    list.push_back(nifti("a description that says that its face is another's (AFNI's reface)", "taken away",
+                         [](std::string& h) { h.replace(148, 8, "reface_r"); }));
     list.push_back(text("NRRD", "no space", "does not say its frame", "space: left-posterior-superior\n", ""));
     list.push_back(
         text("NRRD", "a space of the scanner", "not that of a patient", "left-posterior-superior", "scanner-xyz"));

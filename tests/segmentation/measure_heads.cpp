@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +17,7 @@
 #include "planning_io/files/image_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
+#include "planning_io/volume/slice_faults.h"
 #include "segmentation/outside_air.h"
 #include "segmentation/skin_judgement.h"
 #include "segmentation/skin_threshold.h"
@@ -34,6 +36,7 @@ struct Row {
     double ml = NAN, off_percent = NAN, plain_off_percent = NAN, seconds = 0;
     SkinJudgement judged;
     SkinMask mask;
+    std::array<double, 3> jumps{};  ///< `largest_slice_jumps`
 };
 
 /// Threshold, largest piece, fill.
@@ -86,6 +89,7 @@ Row measure(const fs::path& path, const fs::path& pictures) {
         const TriangleMesh skin = triangulate_skin(volume, row.mask);
         row.judged = judge_skin(volume, row.mask, skin);
         row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+        row.jumps = largest_slice_jumps(volume);
         row.ml = row.mask.volume_ml;
         const auto points = ray_skin(volume);
         const OffSkin off = off_skin(points, skin);
@@ -183,9 +187,9 @@ int main(int argc, char** argv) {
         return wrong == 0 ? 0 : 6;
     }
     fmt::print(
-        "head\tverdict\texpected\tml\tthreshold\tball mm\tlayered\tnose mm\tblur mm\tunsure\tsigma mm\techo\toff > 2 "
-        "mm "
-        "%\tplain off %\ts\twhy\n");
+        "head\tverdict\texpected\tml\tthreshold\tball mm\tlayered\tnose mm\tblur mm\tunsure\tsigma "
+        "mm\techo\tjumps\toff "
+        "> 2 mm %\tplain off %\ts\twhy\n");
     for (const auto& head : heads) {
         const std::string name = head.filename().string();
         const Row row = measure(head, pictures);
@@ -193,13 +197,12 @@ int main(int argc, char** argv) {
         const bool right = known == expected.end() || is_right(row.verdict, known->second, false);
         wrong += !right;
         fmt::print(
-            "{}\t{}{}\t{}\t{:.0f}\t{:.4g}\t{:.0f}\t{:.2f}\t{:.0f}\t{:.1f}\t{:.3f}\t{:.2f}\t{:.2f}\t{:.2f}\t{:.2f}\t{:."
-            "1f}\t{}"
-            "\n",
+            "{}\t{}{}\t{}\t{:.0f}\t{:.4g}\t{:.0f}\t{:.2f}\t{:.0f}\t{:.1f}\t{:.3f}\t{:.2f}\t{:.1f}\t{:.2f}\t{:.2f}\t"
+            "{:.1f}\t{}\n",
             name, row.verdict, right ? "" : " WRONG", known == expected.end() ? "-" : known->second, row.ml,
             row.mask.threshold_said, row.judged.ball_radius_mm, row.judged.layered_share, row.judged.nose_mm,
-            row.judged.edge_blur_mm, row.mask.unsure_share, row.judged.noise_sigma_mm, row.judged.echo, row.off_percent,
-            row.plain_off_percent, row.seconds, row.why);
+            row.judged.edge_blur_mm, row.mask.unsure_share, row.judged.noise_sigma_mm, row.judged.echo,
+            fmt::join(row.jumps, " "), row.off_percent, row.plain_off_percent, row.seconds, row.why);
         std::fflush(stdout);
     }
     fmt::print("{} heads, {} not as expected\n", heads.size(), wrong);

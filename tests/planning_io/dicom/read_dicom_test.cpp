@@ -48,6 +48,21 @@ TEST(DicomSlices, AnEvenStackInAnyOrderIsAVolumeAndATiltIsKept) {
     EXPECT_LT((ct_from_voxel * Vector3d(10, 20, 5) - Vector3d(-100 + 5, -120 + 12 + 2, 7 + 7.5)).norm(), 1e-9);
 }
 
+// As a viewer's "thick slab" makes them: each is a mean over what lies around it.
+TEST(DicomSeries, SlicesThatOverlapByMoreThanHalfBlurTheSkin) {
+    const test::TemporaryFolder folder;
+    for (const auto& [thick_mm, said] : {std::pair{"4.0", false}, {"8.0", false}, {"10.0", true}}) {
+        const fs::path into = folder.path() / thick_mm;
+        fs::create_directories(into);
+        auto objects = test::synthetic_series({});  // 4 mm apart
+        for (auto& object : objects) object.text(0x00180050, "DS", thick_mm);
+        test::write_series(objects, into);
+        std::string notes;
+        for (const std::string& note : read_volume(into).notes) notes += note;
+        EXPECT_EQ(notes.find("the skin is blurred") != std::string::npos, said) << thick_mm << ": " << notes;
+    }
+}
+
 class DicomFolder : public ::testing::Test {
 protected:
     /// A copy of a third-party series that may be spoilt; skips without it.

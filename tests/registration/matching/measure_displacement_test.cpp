@@ -67,6 +67,25 @@ TEST(MeasureDisplacement, OfAThinScanIsFoundInLargerPlaces) {
     EXPECT_EQ(measure_displacement(dense, head_lut(), RigidTransform::Identity()).apart_mm, 4);
 }
 
+// The scan's own noise, of up to a millimetre a point, is no movement of the skin; waves are as large as without it.
+TEST(MeasureDisplacement, TheSpreadOfTheSkinIsWithoutTheScansNoise) {
+    const auto spread_of = [](double waves_mm, double noise_mm) {
+        const PointCloud cloud = displaced(head_view(View::front, 190, 20000, 9), [&](auto& p, auto&) {
+            return waves_mm * (std::sin(p.x() / 12) + std::sin(p.z() / 12));
+        });
+        const SkinDisplacement found =
+            measure_displacement(spoiled(cloud, noise_mm, 0, 10), head_lut(), RigidTransform::Identity());
+        EXPECT_TRUE(found.known());
+        return std::pair{found.spread_mm, spread_of_skin_mm(found)};
+    };
+    const auto [with_noise, without] = spread_of(0, 1);
+    EXPECT_GT(with_noise, 0.2);
+    EXPECT_LT(without, 0.5 * with_noise);
+    EXPECT_NEAR(spread_of(0.4, 1).second, spread_of(0.4, 0.05).second, 0.05);
+    EXPECT_GT(spread_of(0.4, 0.05).second, 0.33);
+    EXPECT_EQ(spread_of_skin_mm({}), 0);
+}
+
 TEST(MeasureDisplacement, TooFewPlacesTellNothing) {
     EXPECT_FALSE(
         measure_displacement(head_view(View::front, 20, 2000, 1), head_lut(), RigidTransform::Identity()).known());
