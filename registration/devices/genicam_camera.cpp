@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "planning_io/types/error.h"
+#include "registration/devices/genicam_failure.h"
 #include "registration/devices/mono_pixels.h"
+#include "registration/devices/plain_picture.h"
 
 namespace planlight {
 namespace {
@@ -25,21 +27,6 @@ struct Unref {
 };
 using CameraPointer = std::unique_ptr<ArvCamera, Unref>;
 using StreamPointer = std::unique_ptr<ArvStream, Unref>;
-
-/// The error of a call into Aravis.
-class Failure {
-public:
-    ~Failure() { g_clear_error(&error_); }
-    GError** slot() {
-        g_clear_error(&error_);
-        return &error_;
-    }
-    bool happened() const { return error_ != nullptr; }
-    std::string text() const { return error_ ? error_->message : "unknown"; }
-
-private:
-    GError* error_ = nullptr;
-};
 
 bool another_exposure(double now, double was) {
     return std::abs(now / was - 1) > 0.02;
@@ -87,14 +74,14 @@ GenicamCamera::GenicamCamera(GenicamSettings settings, FrameBell& bell, const Cl
 GenicamCamera::~GenicamCamera() {
     thread_.request_stop();
     thread_.join();
-    if (device_->camera) arv_camera_stop_acquisition(device_->camera.get(), Failure().slot());
+    if (device_->camera) arv_camera_stop_acquisition(device_->camera.get(), GenicamFailure().slot());
 }
 
 void GenicamCamera::open() {
     std::string id = settings_.device;
     for (const FoundCamera& found : list_genicam_cameras())
         if (found.serial == settings_.device) id = found.id;
-    Failure failure;
+    GenicamFailure failure;
     device_->camera.reset(arv_camera_new(id.c_str(), failure.slot()));
     if (!device_->camera)
         throw DeviceError(name_, fmt::format("\"{}\" does not answer ({})", settings_.device, failure.text()),
@@ -102,7 +89,7 @@ void GenicamCamera::open() {
 }
 
 std::string GenicamCamera::serial_of_device() const {
-    return text_or_empty(arv_camera_get_device_serial_number(device_->camera.get(), Failure().slot()));
+    return text_or_empty(arv_camera_get_device_serial_number(device_->camera.get(), GenicamFailure().slot()));
 }
 
 void GenicamCamera::refuse(const std::string& what, const std::string& why) const {
@@ -110,41 +97,9 @@ void GenicamCamera::refuse(const std::string& what, const std::string& why) cons
                       "Give what `planlight devices` lists for it.");
 }
 
-/// What a camera does by itself changes pictures between two of a scan: switched off, and said where it cannot be.
-std::vector<std::string> GenicamCamera::switch_off_automatics() {
-    ArvCamera* camera = device_->camera.get();
-    Failure failure;
-    std::vector<std::string> notes;
-    if (arv_camera_is_black_level_auto_available(camera, failure.slot()))
-        arv_camera_set_black_level_auto(camera, ARV_AUTO_OFF, failure.slot());
-    for (const char* name : {"GammaEnable", "GammaEnabled", "SharpnessEnable", "SharpnessEnabled", "LUTEnable"}) {
-        if (!arv_camera_is_feature_available(camera, name, failure.slot())) continue;
-        arv_camera_set_boolean(camera, name, false, failure.slot());
-        if (arv_camera_get_boolean(camera, name, failure.slot()))
-            notes.push_back(fmt::format("{} cannot be switched off", name));
-    }
-    if (arv_camera_is_feature_available(camera, "Gamma", failure.slot())) {
-        arv_camera_set_float(camera, "Gamma", 1, failure.slot());
-        const double gamma = arv_camera_get_float(camera, "Gamma", failure.slot());
-        if (!failure.happened() && std::abs(gamma - 1) > 0.01)
-            notes.push_back(fmt::format("its gamma stays at {:.2f}", gamma));
-    }
-    if (arv_camera_is_exposure_auto_available(camera, failure.slot())) {
-        arv_camera_set_exposure_time_auto(camera, ARV_AUTO_OFF, failure.slot());
-        if (arv_camera_get_exposure_time_auto(camera, failure.slot()) != ARV_AUTO_OFF)
-            notes.emplace_back("its automatic exposure cannot be switched off");
-    }
-    if (arv_camera_is_gain_auto_available(camera, failure.slot())) {
-        arv_camera_set_gain_auto(camera, ARV_AUTO_OFF, failure.slot());
-        if (arv_camera_get_gain_auto(camera, failure.slot()) != ARV_AUTO_OFF)
-            notes.emplace_back("its automatic gain cannot be switched off");
-    }
-    return notes;
-}
-
 void GenicamCamera::set_format_and_region() {
     ArvCamera* camera = device_->camera.get();
-    Failure failure;
+    GenicamFailure failure;
     arv_camera_stop_acquisition(camera, failure.slot());  // of a program that ended badly
     arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, failure.slot());
     if (failure.happened()) refuse("continuous acquisition", failure.text());
@@ -161,7 +116,7 @@ void GenicamCamera::set_format_and_region() {
 /// back. Where that cannot be set, it must be what it was.
 void GenicamCamera::set_exposure_and_gain() {
     ArvCamera* camera = device_->camera.get();
-    Failure failure;
+    GenicamFailure failure;
     const bool opened_before = exposure_ > Instant{};
     if (settings_.exposure_ms) {
         arv_camera_set_exposure_time(camera, 1e3 * *settings_.exposure_ms, failure.slot());
@@ -187,7 +142,7 @@ void GenicamCamera::set_exposure_and_gain() {
 
 void GenicamCamera::set_trigger() {
     ArvCamera* camera = device_->camera.get();
-    Failure failure;
+    GenicamFailure failure;
     if (!settings_.line.empty()) {
         arv_camera_set_trigger(camera, settings_.line.c_str(), failure.slot());
         if (failure.happened()) refuse("the trigger " + settings_.line, failure.text());
@@ -201,10 +156,10 @@ void GenicamCamera::set_trigger() {
 
 GenicamCamera::Setup GenicamCamera::configure() {
     ArvCamera* camera = device_->camera.get();
-    Failure failure;
+    GenicamFailure failure;
     Setup setup;
     set_format_and_region();
-    setup.notes = switch_off_automatics();
+    setup.notes = switch_off_automatics(camera);
     set_exposure_and_gain();
     set_trigger();
     const double exposure_us = arv_camera_get_exposure_time(camera, failure.slot());
@@ -222,7 +177,7 @@ GenicamCamera::Setup GenicamCamera::configure() {
 
 void GenicamCamera::start() {
     ArvCamera* camera = device_->camera.get();
-    Failure failure;
+    GenicamFailure failure;
     // As large packets as the network lets through: fewer of them are lost.
     if (arv_camera_is_gv_device(camera)) arv_camera_gv_auto_packet_size(camera, failure.slot());
     const unsigned payload = arv_camera_get_payload(camera, failure.slot());
@@ -325,7 +280,7 @@ bool GenicamCamera::still_as_set() {
     const Instant now = clock_.now();
     if (now - looked_at_ < settings_.look_every) return true;
     looked_at_ = now;
-    Failure failure;
+    GenicamFailure failure;
     const double exposure_us = arv_camera_get_exposure_time(device_->camera.get(), failure.slot());
     if (failure.happened()) return true;  // a lost camera tells by itself
     if (another_exposure(exposure_us, 1e6 * seconds(exposure_))) {

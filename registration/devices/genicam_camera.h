@@ -68,7 +68,6 @@ private:
     void set_format_and_region();
     void set_exposure_and_gain();
     void set_trigger();
-    std::vector<std::string> switch_off_automatics();
     [[noreturn]] void refuse(const std::string& what, const std::string& why) const;
     void start();
     void run(const std::stop_token& stop);

@@ -69,6 +69,12 @@ GstreamerCamera::GstreamerCamera(GstreamerSettings settings, FrameBell& bell, co
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
+std::vector<std::string> GstreamerCamera::notes() const {
+    return {
+        "nothing here can tell whether it changes exposure, gain or white balance by itself, nor whether its "
+        "shutter rolls (rows one after the other: a head that moves is then seen bent): set them by its own means"};
+}
+
 GstreamerCamera::~GstreamerCamera() {
     thread_.request_stop();
     if (thread_.joinable()) thread_.join();

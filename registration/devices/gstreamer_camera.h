@@ -37,6 +37,8 @@ public:
     int width() const override { return width_; }
     int height() const override { return height_; }
     FrameQueue& frames() override { return frames_; }
+    /// What nobody can ask it.
+    std::vector<std::string> notes() const override;
 
 private:
     struct Pipeline;

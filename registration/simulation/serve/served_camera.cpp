@@ -65,7 +65,8 @@ void ServedCamera::Parts::fill(ArvBuffer* buffer) {
 
 void ServedCamera::Parts::switch_on() {
     ending = false;
-    server = arv_gv_fake_camera_new(settings.address.c_str(), settings.serial.c_str());
+    const char* const features = settings.genicam_file.empty() ? nullptr : settings.genicam_file.c_str();
+    server = arv_gv_fake_camera_new_full(settings.address.c_str(), settings.serial.c_str(), features);
     if (!server || !arv_gv_fake_camera_is_running(server))
         throw DeviceError("Served camera " + settings.serial, settings.address + " cannot be used",
                           "Give this machine the address (`ip address add " + settings.address +
@@ -151,6 +152,16 @@ void ServedCamera::change_exposure(Instant exposure) {
     if (parts_->server)
         arv_fake_camera_write_register(parts_->camera(), ARV_FAKE_CAMERA_REGISTER_EXPOSURE_TIME_US,
                                        static_cast<guint32>(exposure.count() / 1000));
+}
+
+void ServedCamera::write_register(std::uint32_t address, std::uint32_t value) {
+    if (parts_->server) arv_fake_camera_write_register(parts_->camera(), address, value);
+}
+
+std::uint32_t ServedCamera::read_register(std::uint32_t address) const {
+    guint32 value = 0;
+    if (parts_->server) arv_fake_camera_read_register(parts_->camera(), address, &value);
+    return value;
 }
 
 }  // namespace planlight::simulation

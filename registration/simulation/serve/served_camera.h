@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -15,8 +16,9 @@ struct ServedCameraSettings {
     int width = 0, height = 0;
     Instant exposure = std::chrono::milliseconds(10);
     double frames_hz = 25;
-    Instant clock_offset{};  ///< of the camera's clock against this machine's monotonic one
-    double clock_drift = 0;  ///< seconds a second by which it runs fast
+    Instant clock_offset{};      ///< of the camera's clock against this machine's monotonic one
+    double clock_drift = 0;      ///< seconds a second by which it runs fast
+    std::string genicam_file{};  ///< what it says of its features (GenICam XML); empty: a plain camera's
 };
 
 /// A GigE Vision camera that any program on the network can open: Aravis' fake camera with our pictures.
@@ -43,6 +45,9 @@ public:
     void set_clock_offset(Instant offset);
     void set_clock_drift(double seconds_a_second);
     Instant clock_offset() const;
+    /// Of its own memory, as its GenICam file lays it out.
+    void write_register(std::uint32_t address, std::uint32_t value);
+    std::uint32_t read_register(std::uint32_t address) const;
 
 private:
     struct Parts;

@@ -1,9 +1,6 @@
 #include "registration/devices/genicam_camera.h"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <thread>
@@ -11,6 +8,7 @@
 #include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
 #include "registration/simulation/serve/served_camera.h"
+#include "tests/registration/devices/one_served_camera.h"
 
 // Over the loopback network, by the same library calls as a camera on a cable.
 namespace planlight {
@@ -19,27 +17,8 @@ namespace {
 using simulation::ServedCamera;
 using simulation::ServedCameraSettings;
 using std::chrono::milliseconds;
-
-ServedCameraSettings small_camera() {
-    ServedCameraSettings settings;
-    settings.serial = "T-17";
-    settings.width = 64;
-    settings.height = 48;
-    settings.exposure = milliseconds(8);
-    return settings;
-}
-
-/// The cameras' address is this machine's only one: tests that run side by side take turns.
-class OneAtATime {
-public:
-    OneAtATime() : file_(open("/tmp/planlight-served-camera.lock", O_CREAT | O_RDWR, 0666)) { flock(file_, LOCK_EX); }
-    ~OneAtATime() { close(file_); }
-    OneAtATime(const OneAtATime&) = delete;
-    OneAtATime& operator=(const OneAtATime&) = delete;
-
-private:
-    int file_;
-};
+using test::OneAtATime;
+using test::small_camera;
 
 /// Offers a picture every 20 ms whose grey counts up, as long as it lives.
 class Source {
