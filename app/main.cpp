@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 
@@ -48,9 +49,20 @@ int run_command(const CLI::App& command, const Run& run, const ConsoleSettings& 
     return run();
 }
 
+/// Volumes and pictures come and go by the dozen. Memory that is handed back to the system each time costs a page fault
+/// for every 4 KiB when it is asked for again: a fifth of a preparation's processor time, for 2 % less memory.
+void keep_freed_memory() {
+    constexpr int kMmapFrom_bytes = 32 << 20;  // the most that the library takes
+    constexpr int kKept_bytes = 1 << 30;
+    mallopt(M_MMAP_THRESHOLD, kMmapFrom_bytes);
+    mallopt(M_TRIM_THRESHOLD, kKept_bytes);
+    mallopt(M_TOP_PAD, 16 << 20);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    keep_freed_memory();
     CLI::App app{"Planlight shows a surgical plan as light on the patient.\n", "planlight"};
     app.footer(std::string("planlight COMMAND --help shows a command's options and an example.\n") + kExitCodes);
     app.require_subcommand(1);
