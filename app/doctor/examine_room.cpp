@@ -8,6 +8,7 @@
 
 #include "app/doctor/examine_machine.h"
 #include "app/doctor/exposure.h"
+#include "app/doctor/light_until_ended.h"
 #include "app/live/room_cameras.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/case/rig_file.h"
@@ -73,10 +74,21 @@ public:
     Examination(const RoomFile& room, const ExamineSettings& settings) : room_(room), settings_(settings) {}
 
     std::vector<DoctorLine> whole() {
+        try {
+            look_at_all();
+        } catch (const ExaminationEnded&) {  // what was found until then stays
+        }
+        return std::move(lines_);
+    }
+
+private:
+    void look_at_all() {
         attempt("the case", "case, files", [&] { look_at_case(); });
         attempt("this computer", "computer", [&] {
-            add(judge_machine(
-                examine_machine(settings_.case_folder.empty() ? std::filesystem::path(".") : settings_.case_folder)));
+            const std::filesystem::path folder = settings_.case_folder.empty() ? "." : settings_.case_folder;
+            MachineFigures machine;
+            ask_window_system([&] { machine = examine_machine(folder); });
+            add(judge_machine(machine));
         });
         attempt("the rig file", "rig, file", [&] { rig_ = read_rig(room_.rig); });
         if (!room_.monitor.empty()) attempt("the monitor", "projector, monitor", [&] { look_at_monitor(); });
@@ -88,35 +100,49 @@ public:
             attempt("a scan", "rig, scan", [&] { scan(); });
         }
         if (watched_) judge_cameras();
-        return std::move(lines_);
     }
 
-private:
-    void add(std::vector<DoctorLine> more) { lines_.insert(lines_.end(), more.begin(), more.end()); }
+    void add(const DoctorLine& line) {
+        lines_.push_back(line);
+        if (settings_.found) settings_.found(line);
+    }
+    void add(const std::vector<DoctorLine>& more) {
+        for (const DoctorLine& line : more) add(line);
+    }
 
     template <class Step>
     void attempt(const std::string& what, const std::string& subject, Step step) {
+        if (settings_.ended.stop_requested()) throw ExaminationEnded();
         if (settings_.under_way) settings_.under_way(what);
         try {
             step();
         } catch (const Error& error) {
-            lines_.push_back({subject, Health::stop, error.what(), error.remedy});
+            add(DoctorLine{subject, Health::stop, error.what(), error.remedy});
         } catch (const std::exception& error) {  // one that we did not foresee must not take the other lines with it
-            lines_.push_back({subject, Health::stop, std::string("it could not be examined: ") + error.what(),
-                              "Mend what the other lines name, then run this again; if it stays, report it."});
+            add(line_of_failure(subject, error));
         }
+        if (settings_.ended.stop_requested()) throw ExaminationEnded();
+    }
+
+    void ask_window_system(const std::function<void()>& question) const {
+        if (settings_.ask_window_system)
+            settings_.ask_window_system(question);
+        else
+            question();
     }
 
     void look_at_case() {
         if (settings_.case_folder.empty()) return;
         const Case the_case = read_case(settings_.case_folder);
-        lines_.push_back({"case, files", Health::good, title_of(the_case) + ": whole, every checksum fits", {}});
+        add(DoctorLine{"case, files", Health::good, title_of(the_case) + ": whole, every checksum fits", {}});
     }
 
     void look_at_monitor() {
         MonitorFigures figures;
         figures.wanted = room_.monitor;
-        for (const Monitor& monitor : list_monitors())  // throws without a display: then there is nothing to judge
+        std::vector<Monitor> monitors;
+        ask_window_system([&] { monitors = list_monitors(); });  // throws without a display: then nothing is judged
+        for (const Monitor& monitor : monitors)
             if (monitor.name == room_.monitor) figures.found = monitor;
         monitor_ = figures;
         if (!room_.projector_file.empty()) monitor_->measured = read_projector_file(room_.projector_file);
@@ -128,9 +154,8 @@ private:
         right_before_ = cameras_->pair().right().frames().counts();
         watched_ = watch_cameras(cameras_->pair(), room_, clock_, settings_.watch);
         if (cameras_->recorded())
-            lines_.push_back({"cameras, recorded", Health::look,
-                              "a recording is played: nothing here is said of devices",
-                              "Name the room's own cameras in room.json before a patient comes."});
+            add(DoctorLine{"cameras, recorded", Health::look, "a recording is played: nothing here is said of devices",
+                           "Name the room's own cameras in room.json before a patient comes."});
     }
 
     /// Last, for their clocks are known the better the longer they run.
@@ -149,7 +174,7 @@ private:
     }
 
     void measure_delay() {
-        DelayFigures delay = flash(projector_->projector(), cameras_->pair(), clock_);
+        DelayFigures delay = flash(*light_, cameras_->pair(), clock_);
         // (Of what was taken while flashing, frames may have been left out.)
         delay.frame_interval_ms = 1e3 / std::max(watched_->left.rate_hz, watched_->right.rate_hz);
         if (monitor_ && monitor_->measured.light_delay) delay.told_ms = 1e3 * seconds(*monitor_->measured.light_delay);
@@ -160,11 +185,12 @@ private:
         if (room_.monitor.empty() ? !cameras_ : !monitor_ || !monitor_->found) return;
         try {
             projector_ = std::make_unique<CommandProjector>(room_, cameras_.get());
+            light_.emplace(projector_->projector(), settings_.ended);
             if (!monitor_) return;
-            Projector& projector = projector_->projector();
-            projector.show(RgbImage(projector.width(), projector.height()), clock_.now() + std::chrono::seconds(1));
+            light_->show(RgbImage(light_->width(), light_->height()), clock_.now() + std::chrono::seconds(1));
             monitor_->covered = true;
         } catch (const Error& error) {
+            light_.reset();
             projector_.reset();
             if (!monitor_) throw;
             monitor_->problem = error.what();
@@ -174,9 +200,9 @@ private:
 
     void scan() {
         StripeSettings stripes;
-        stripes.width = projector_->projector().width();
-        stripes.height = projector_->projector().height();
-        const ScanCapture capture = capture_scan(projector_->projector(), cameras_->pair(), clock_, stripes);
+        stripes.width = light_->width();
+        stripes.height = light_->height();
+        const ScanCapture capture = capture_scan(*light_, cameras_->pair(), clock_, stripes);
         for (const bool right : {false, true}) {
             const auto& pictures = right ? capture.right : capture.left;
             const Exposure exposure = exposure_of(pictures[0], pictures[1]);
@@ -200,12 +226,18 @@ private:
     CameraCounts left_before_, right_before_;  ///< when they were opened and their clocks known
     std::optional<WatchedCameras> watched_;
     std::unique_ptr<CommandProjector> projector_;
+    std::optional<LightUntilEnded> light_;  ///< of `projector_`
 };
 
 }  // namespace
 
 std::vector<DoctorLine> examine_room(const RoomFile& room, const ExamineSettings& settings) {
     return Examination(room, settings).whole();
+}
+
+DoctorLine line_of_failure(const std::string& subject, const std::exception& error) {
+    return {subject, Health::stop, std::string("it could not be examined: ") + error.what(),
+            "Mend what the other lines name, then run this again; if it stays, report it."};
 }
 
 WatchedCameras watch_cameras(PairedCameras& cameras, const RoomFile& room, const Clock& clock, Instant how_long) {

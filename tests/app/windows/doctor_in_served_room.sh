@@ -27,6 +27,8 @@ sed 's|"monitor": "DUMMY1"|"monitor": "DUMMY1", "file": "'"$folder"'/projector.j
 doctor well "$folder/room/whole.json" "$folder/case"
 cat "$folder/well.txt"
 check "a room that is well has nothing that stops" "$(is "$code == 0")" "exit code $code"
+"$PLANLIGHT" doctor --room "$folder/room/whole.json" "$folder/case" --window --operator DUMMY0 --screenshot "$folder/page.png" >"$folder/window.txt" 2>"$folder/errors"; code=$?
+check "nor has it on the page" "$(is "$code == 0 && $(grep -c . "$folder/window.txt") >= $(grep -c . "$folder/well.txt") - 2")" "exit code $code: $(cat "$folder/window.txt")"
 "$PLANLIGHT" check --live --room "$folder/room/whole.json" >"$folder/checked.txt" 2>&1; code=$?
 check "check --live finds the rig good" "$(is "$code == 0")" "exit code $code: $(cat "$folder/checked.txt")"
 sed 's/SIM-L/SIM-X/; s/SIM-R/SIM-L/; s/SIM-X/SIM-R/' "$folder/room/whole.json" >"$folder/room/exchanged.json"

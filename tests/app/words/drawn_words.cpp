@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "app/windows/doctor_page_model.h"
 #include "app/windows/fonts.h"
 #include "app/windows/guide_panels.h"
 #include "app/windows/status_word.h"
@@ -19,6 +20,7 @@ DrawnWords::DrawnWords(const std::string& language, int width, int height)
     for (int kind = 0; kind <= static_cast<int>(StatusKind::waiting); ++kind)
         letters.word += words_->say(status_word(static_cast<StatusKind>(kind)));
     for (const std::string& word : guide_words()) letters.word += words_->say(word);
+    for (const std::string& word : doctor_words()) letters.word += words_->say(word);
     pen.fonts = load_fonts(*ImGui::GetIO().Fonts, find_fonts(), place.scale, letters);
     unsigned char* pixels = nullptr;
     int w = 0, h = 0;

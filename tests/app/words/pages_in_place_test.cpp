@@ -1,10 +1,11 @@
-// Every text of the windows beside the operator's has room in its place: of a review, the cameras, a guided
+// Every text of the windows beside the operator's has room in its place: of a review, the cameras, the doctor, a guided
 // calibration.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "app/windows/camera_page_panels.h"
+#include "app/windows/doctor_page_panels.h"
 #include "app/windows/guide_panels.h"
 #include "app/windows/panels.h"
 #include "app/windows/review_panels.h"
@@ -90,6 +91,67 @@ TEST_P(PagesInPlace, ThePageOfTheCamerasHasRoom) {
         EXPECT_GE(box->height, 71.9F * shrunk) << "for a gloved finger";
     const float share = height <= width ? 0.35F : shrunk < 1 ? 0.12F : 0.2F;
     EXPECT_GE(place.picture[0].height, share * static_cast<float>(height)) << "pictures are what it is for";
+}
+
+/// Lines as long as the doctor says them, of each kind so many.
+DoctorPageModel examined(std::size_t each) {
+    using Health = DoctorPageModel::Health;
+    DoctorPageModel model;
+    model.title = "Is everything in this room ready for a patient?";
+    model.step = "the projector's delay";
+    model.took_s = 36;
+    for (std::size_t i = 0; i < each; ++i) {
+        model.lines.push_back({"right camera, receive buffer", Health::good,
+                               "fine stripes keep 83 % of their contrast (blur 1.6 pixels of the projector)", ""});
+        model.lines.push_back(
+            {"left camera, receive buffer", Health::look,
+             "light comes 123 ms after its order (+-12): light cannot follow a head that moves, and goes out when it "
+             "does",
+             "Switch off what the projector does to its picture (keystone, noise reduction, motion), choose its game "
+             "mode, or take another projector."});
+        model.lines.push_back({"cameras, same moment", Health::stop,
+                               "the right camera sees a flash 40.0 ms later: it runs a frame behind",
+                               "Switch that camera off and on. If it stays, give its own transfer_ms in room.json, or "
+                               "look at its trigger."});
+    }
+    return model;
+}
+
+TEST_P(PagesInPlace, ThePageOfTheDoctorHasRoom) {
+    const auto [width, height] = std::get<1>(GetParam());
+    const DoctorPageLayout place =
+        doctor_page_layout(static_cast<float>(width), static_cast<float>(height), drawn_.place.scale);
+    for (const std::size_t each : {0U, 1U, 12U}) {
+        DoctorPageModel model = examined(each);
+        for (const auto verdict :
+             {DoctorPageModel::Verdict::looking, DoctorPageModel::Verdict::ended, DoctorPageModel::Verdict::good,
+              DoctorPageModel::Verdict::look, DoctorPageModel::Verdict::stop}) {
+            model.verdict = verdict;
+            DoctorPageScroll scroll;
+            draw_doctor_page(drawn_.pen, place, model, scroll);
+            expect_whole(std::string(doctor_word(verdict)) + " with " + std::to_string(each));
+        }
+    }
+    const float shrunk = std::min(1.0F, static_cast<float>(std::max(width, height)) / 1280);  // below 1280 x 720
+    for (const Box* box : {&place.dark, &place.again, &place.close})
+        EXPECT_GE(box->height, 71.9F * shrunk) << "for a gloved finger";
+}
+
+// Whoever goes down far enough sees the last line, and no further.
+TEST_P(PagesInPlace, TheDoctorsLinesAreMovedToTheLastAndNotBeyond) {
+    const DoctorPageLayout place =
+        doctor_page_layout(static_cast<float>(std::get<1>(GetParam()).first),
+                           static_cast<float>(std::get<1>(GetParam()).second), drawn_.place.scale);
+    DoctorPageScroll scroll{1000, 1000};
+    draw_doctor_page(drawn_.pen, place, examined(40), scroll);
+    EXPECT_GT(scroll.wanted, 0);
+    EXPECT_LT(scroll.wanted, 80);
+    EXPECT_GT(scroll.good, 0);
+    EXPECT_LT(scroll.good, 40);
+    scroll = {-3, -3};
+    draw_doctor_page(drawn_.pen, place, examined(0), scroll);
+    EXPECT_EQ(scroll.wanted, 0);
+    EXPECT_EQ(scroll.good, 0);
 }
 
 TEST_P(PagesInPlace, TheWindowOfAGuidedCalibrationHasRoomForItsWords) {

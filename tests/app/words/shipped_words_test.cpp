@@ -83,6 +83,8 @@ constexpr const char* kSaying[] = {
     "app/windows/camera_page_figures.cpp",
     "app/windows/camera_page_panels.cpp",
     "app/windows/camera_panel.cpp",
+    "app/windows/doctor_page_lines.cpp",
+    "app/windows/doctor_page_panels.cpp",
     "app/windows/evidence_page.cpp",
     "app/windows/guide_panels.cpp",
     "app/windows/guide_window.cpp",
@@ -94,6 +96,9 @@ constexpr const char* kSaying[] = {
     "app/windows/review_window.cpp",
     "app/windows/scene_overlay.cpp",
     "app/windows/table_panel.cpp",
+    "app/doctor/doctor_screen.cpp",
+    "app/doctor/examine_room.cpp",
+    "app/doctor/judge_room.cpp",
     "app/live/camera_screen.cpp",
     "app/live/guide_screen.cpp",
     "app/live/guided_calibration.cpp",
@@ -127,6 +132,7 @@ constexpr const char* kSaying[] = {
     "projection/skin_now.cpp",
     "projection/projector_process.cpp",
     "projection/light_mailbox.cpp",
+    "registration/calibration/check_drift.cpp",
     "registration/calibration/pose_guide.cpp",
     "registration/calibration/pose_wanted.cpp",
     "registration/matching/judge_match.cpp",
@@ -165,7 +171,8 @@ const std::set<std::string> kNotShown{
     "as a pose that is there", "outside the projector's light", "seen in part only", "too near", "Not found",
     "Checking the skin", "Looking again",  // names of states, for the guide
     "Only one",                            // begins a sentence
-    "Show landmarks\"",
+    "Show landmarks\"", "cameras moved", "lens changed", "distortion wrong",
+    "cannot tell",  // verdicts, as files and the terminal name them
     // Said on the terminal, before there is a session.
     "the projector on {} is not the one that was measured on {}: its {} is {}, was {}",
     "Connect that projector, set its resolution, or measure this one with `planlight projector`.",

@@ -1,0 +1,47 @@
+#include "app/commands/doctor_options.h"
+#include "app/commands/language_option.h"
+#include "app/console.h"
+#include "app/doctor/doctor_screen.h"
+#include "app/windows/doctor_page.h"
+#include "planning_io/files/image_file.h"
+
+namespace planlight {
+namespace {
+
+WindowSettings window_settings(const DoctorOptions& options) {
+    const SiteSettings site = read_site_settings();
+    WindowSettings settings = settings_of_window(options.language, options.theme, site);
+    settings.title = "Planlight doctor";
+    const std::string& monitor = options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
+    if (!monitor.empty()) settings.monitor = monitor;
+    return settings;
+}
+
+}  // namespace
+
+ExaminationState show_doctor_page(const DoctorOptions& options, const RoomFile& room) {
+    constexpr double kLongestRest_s = 0.05;
+    note_end_signals();
+    DoctorPage page(window_settings(options));
+    ExamineSettings examine;
+    examine.case_folder = options.case_folder;
+    auto examination = std::make_unique<RunningExamination>(room, examine);
+    for (;;) {
+        examination->answer();
+        const ExaminationState state = examination->state();
+        const DoctorPageAction action = page.frame(doctor_page_model_of(state, room.name));
+        if (action == DoctorPageAction::dark) examination->end();
+        if (action == DoctorPageAction::again && state.over)
+            examination = std::make_unique<RunningExamination>(room, examine);
+        if (action == DoctorPageAction::quit || asked_to_end()) break;
+        if (state.over && !options.screenshot.empty()) {
+            write_png(page.screenshot(), options.screenshot, ReadableBy::owner);
+            break;
+        }
+        page.rest(kLongestRest_s);
+    }
+    examination->end();
+    return examination->state();
+}
+
+}  // namespace planlight
