@@ -128,7 +128,10 @@ Run add_simulate(CLI::App& app) {
     sub->add_option("--frames", o.frames, "Tracking frames after the scan")
         ->capture_default_str()
         ->check(CLI::Range(0, 10000));
-    sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head in the tracking frames (served: 0)")
+    sub->add_option(
+           "--speed-mm-s", o.speed_mm_s,
+           "Peak speed of the head in the tracking frames. Served (default: 0): from the light of a plan on, until "
+           "stripes come")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 500.0));
     sub->add_option("--with", o.with,

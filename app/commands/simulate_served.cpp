@@ -10,6 +10,7 @@
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "projection/monitor_picture.h"
+#include "registration/simulation/serve/head_under_light.h"
 #include "registration/simulation/serve/served_room.h"
 
 namespace planlight {
@@ -82,9 +83,8 @@ int run_simulate_served(const SimulateOptions& options, simulation::SimulatedRig
     const simulation::ServeSettings settings = serve_settings(options);
     MonitorPicture monitor(options.serve);
     check_monitor(monitor, options.serve, rig.projector());
-    if (options.speed_mm_s > 0) rig.set_motion({options.speed_mm_s, rig.clock().now()});
-    serve(options, settings, monitor,
-          {rig.projector(), rig.cameras(), rig.clock(), [&](Instant duration) { rig.wait(duration); }},
+    simulation::HeadUnderLight head(rig, options.speed_mm_s);
+    serve(options, settings, monitor, {head, rig.cameras(), rig.clock(), [&](Instant duration) { rig.wait(duration); }},
           "rig.json, truth.json", [&] { write_rig_files(options, rig, settings); });
     return 0;
 }

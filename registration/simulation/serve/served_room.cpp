@@ -28,7 +28,7 @@ struct ServedRoom::Parts {
     LookAtMonitor look;
     ServeSettings settings;
     SteadyClock clock;
-    Instant began = clock.now();  ///< when the room's clock was 0
+    const Instant began = clock.now() - rig.clock.now();  ///< when the room's clock was 0
     Instant interval{}, exposure{};
     std::mutex mutex;
     std::deque<Order> orders;
@@ -93,8 +93,7 @@ void ServedRoom::Parts::expose(const std::stop_token& stop) {
             std::this_thread::sleep_for(
                 std::clamp(wall - clock.now(), Instant{}, Instant(std::chrono::milliseconds(2))));
     };
-    began = clock.now() - rig.clock.now();
-    Instant next = rig.clock.now();
+    Instant next = clock.now() - began;
     while (!stop.stop_requested()) {
         const Instant wall = clock.now() - began;
         if (next + exposure + settings.latency < wall) {  // it could not be sent in time any more
@@ -162,6 +161,9 @@ void ServedRoom::exchange_cameras(bool exchanged) {
 }
 void ServedRoom::hold_right_back(int frames) {
     parts_->right_held_back = frames;
+}
+Instant ServedRoom::room_began() const {
+    return parts_->began;
 }
 std::uint64_t ServedRoom::made() const {
     return parts_->made;

@@ -43,6 +43,8 @@ public:
     void exchange_cameras(bool exchanged);
     /// The right camera sends each picture so many frames late, with the time at which it was exposed.
     void hold_right_back(int frames);
+    /// When the room's clock was 0, on the wall's (`SteadyClock`): the room's own time is what has passed since.
+    Instant room_began() const;
     /// Pictures that were made since the beginning, and those that came too late for their own moment.
     std::uint64_t made() const;
     std::uint64_t late() const;
