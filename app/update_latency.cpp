@@ -21,6 +21,10 @@ void UpdateLatency::add(const Session::Update& update) {
         const std::size_t pairs = update.frame.number - last_number_;
         skipped += pairs - 1;
         if (exposures > pairs) missed += exposures - pairs;
+        followed_s += seconds(since);
+    } else if (updates > 1) {
+        ++pauses;
+        paused_s += std::max(0.0, seconds(since));
     }
     last_at_ = update.frame.at;
     last_number_ = update.frame.number;
@@ -53,10 +57,12 @@ std::string UpdateLatency::json() const {
     nlohmann::json reasons = nlohmann::json::object();
     for (const auto& [reason, times] : dark) reasons[reason] = times;
     return fmt::format(
-        "{{\n  \"updates\": {},\n  \"lit\": {},\n  \"skipped\": {},\n  \"missed\": {},\n  \"later_than_30_ms\": {},\n  "
+        "{{\n  \"updates\": {},\n  \"lit\": {},\n  \"skipped\": {},\n  \"missed\": {},\n  \"pauses\": {},\n  "
+        "\"paused_s\": {:.3f},\n  \"followed_s\": {:.3f},\n  \"later_than_30_ms\": {},\n  "
         "\"later_than_a_frame\": {},\n  \"dark\": {},\n  \"mid_exposure_to_display\": {},\n  \"arrival_to_display\": "
         "{}\n}}\n",
-        updates, lit, skipped, missed, late, overtaken, reasons.dump(), part(to_swap_ms), part(from_arrival_ms));
+        updates, lit, skipped, missed, pauses, paused_s, followed_s, late, overtaken, reasons.dump(), part(to_swap_ms),
+        part(from_arrival_ms));
 }
 
 }  // namespace planlight

@@ -16,10 +16,15 @@ public:
     void add(const Session::Update& update);
 
     std::size_t updates = 0, lit = 0;
-    std::size_t skipped = 0;    ///< pairs that came and were not used, for a newer one was there
-    std::size_t missed = 0;     ///< exposures of which no pair came
-    std::size_t late = 0;       ///< drawn more than 30 ms after the pair had come
-    std::size_t overtaken = 0;  ///< drawn more than a frame's interval after it had come
+    std::size_t skipped = 0;  ///< pairs that came and were not used, for a newer one was there
+    std::size_t missed = 0;   ///< exposures of which no pair came
+    /// Between two updates, what is no missing frame: more than a second, or cameras that were opened anew. Every
+    /// exposure of the rest is an update, skipped or missed: `updates - 1 - pauses + skipped + missed` of them in
+    /// `followed_s`.
+    std::size_t pauses = 0;
+    double followed_s = 0, paused_s = 0;  ///< from the first update's mid-exposure to the last one's
+    std::size_t late = 0;                 ///< drawn more than 30 ms after the pair had come
+    std::size_t overtaken = 0;            ///< drawn more than a frame's interval after it had come
     /// Why the others were dark, and how often; figures in a reason are left out ("the last pose is … ms old").
     std::map<std::string, std::size_t> dark;
     LogHistogram to_swap_ms;       ///< of what was lit: from mid-exposure to the display

@@ -35,6 +35,9 @@ TEST(UpdateLatency, CountsWhatWasUsedSkippedMissedAndLate) {
     EXPECT_EQ(latency.missed, 1u);
     EXPECT_EQ(latency.late, 2u);
     EXPECT_EQ(latency.overtaken, 1u);
+    EXPECT_EQ(latency.pauses, 0u);
+    EXPECT_NEAR(latency.followed_s, 0.28, 1e-9);  // seven exposures of 40 ms
+    EXPECT_EQ(latency.updates - 1 + latency.skipped + latency.missed, 7u) << "none of them is unaccounted for";
     EXPECT_NEAR(latency.to_swap_ms.quantile(0.5), 50, 0.5);
     EXPECT_NEAR(latency.from_arrival_ms.quantile(0.99), 50, 0.5);
 }
@@ -46,6 +49,10 @@ TEST(UpdateLatency, APauseIsNoMissingFrame) {
     latency.add(update(90, 9000, 10));
     EXPECT_EQ(latency.skipped, 0u);
     EXPECT_EQ(latency.missed, 0u);
+    latency.add(update(1, 9100, 10));  // the cameras were opened anew, and count from one
+    EXPECT_EQ(latency.pauses, 2u);
+    EXPECT_NEAR(latency.paused_s, 8.06, 1e-9);
+    EXPECT_NEAR(latency.followed_s, 0.04, 1e-9);
 }
 
 TEST(UpdateLatency, ItsJsonIsOne) {
