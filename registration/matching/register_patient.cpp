@@ -50,6 +50,12 @@ double mirror_ratio(const PointCloud& cloud, const MatchingSkin& skin, const Ini
     return (image.candidates[0].cost_mm + kNoise_mm) / (match.candidates[0].cost_mm + kNoise_mm);
 }
 
+/// Skin that sagged takes the pose with it: how far shows by how its places stand apart alone.
+void widen_by_spread(const SkinDisplacement& skin, const RegistrationSettings& settings, PoseCovariance& covariance) {
+    const double more_mm = std::max(0.0, spread_of_skin_mm(skin) - settings.still_skin_spread_mm);
+    covariance.of_turn_and_shift.diagonal().tail<3>().array() += std::pow(settings.shift_by_spread * more_mm, 2);
+}
+
 /// The fine match from `start`, and what it is judged by; returns the skin's fit for the judgement. `seen`: all that
 /// the devices saw, cloth as well: the way back from there must be free.
 FineMatch match_finely(const PointCloud& cloud, const PointCloud& seen, const SkinLut& lut,
@@ -66,6 +72,7 @@ FineMatch match_finely(const PointCloud& cloud, const PointCloud& seen, const Sk
     result.refine_s = seconds_since(start);
     result.patient_from_ct = icp.ct_from_rig.inverse();
     result.skin = measure_displacement(cloud, lut, icp.ct_from_rig);
+    widen_by_spread(result.skin, settings, result.covariance);
 
     FineMatch fine{lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm,
                                settings.moved_skin ? settled.offset_mm : 0),
