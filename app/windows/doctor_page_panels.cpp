@@ -49,8 +49,8 @@ std::string headline_of(const DoctorPageModel& model) {
 
 std::string counts_of(const DoctorPageModel& model) {
     using Health = DoctorPageModel::Health;
-    return fmt::format("{} good, {} to look at, {} that stop; {} s.", model.count(Health::good),
-                       model.count(Health::look), model.count(Health::stop), model.took_s);
+    return fmt::format("{} good, {} to look at, {} stop; {} s.", model.count(Health::good), model.count(Health::look),
+                       model.count(Health::stop), model.took_s);
 }
 
 }  // namespace
@@ -108,15 +108,25 @@ void draw_doctor_verdict(const Pen& pen, const Box& box, const DoctorPageModel& 
     pen.line(pen.fonts.word, word, word_x, middle.y, 0, look.text);
     const float x = narrow ? box.x + pad : word_x + text_width(pen.fonts.word, word) + 2 * pad,
                 width = box.right() - pad - x, bottom = box.bottom() - 6 * s;
-    float y = box.y + (narrow ? row : 0.1F * box.height);
-    const auto sentence = [&](const ImFont* font, const std::string& words, ImU32 colour) {
-        y += pen.paragraph(font, pen.say(words), {x, y, width, bottom - y}, colour) + 4 * s;
+    struct Sentence {
+        const ImFont* font;
+        std::string words;
+        ImU32 colour;
     };
-    sentence(pen.fonts.title, headline_of(model), look.strong);
+    std::vector<Sentence> sentences{{pen.fonts.title, pen.say(headline_of(model)), look.strong}};
     if (!model.over())
-        sentence(pen.fonts.body, "Nobody may lie under the projector. Lay anything light where the patient will be.",
-                 look.text);
-    sentence(pen.fonts.body, counts_of(model), look.text);
+        sentences.push_back(
+            {pen.fonts.body,
+             pen.say("Nobody may lie under the projector. Lay anything light where the patient will be."), look.text});
+    sentences.push_back({pen.fonts.body, pen.say(counts_of(model)), look.text});
+    constexpr std::size_t kAnyLines = 99;
+    float high = 0;
+    for (const Sentence& one : sentences)
+        high += line_height(one.font) * static_cast<float>(broken(one.font, one.words, width, kAnyLines).size());
+    const float top = box.y + (narrow ? row : 0);
+    float y = std::max(top + 4 * s, (top + bottom - high) / 2);
+    for (const Sentence& one : sentences)
+        y += pen.paragraph(one.font, one.words, {x, y, width, bottom - y + 1}, one.colour);
 }
 
 DoctorPageAction draw_doctor_page(const Pen& pen, const DoctorPageLayout& place, const DoctorPageModel& model,

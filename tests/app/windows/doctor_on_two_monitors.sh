@@ -24,7 +24,7 @@ stays_dark() {  # within so many tenths of a second, and for a second from then 
 }
 open_page() { "$PLANLIGHT" doctor --room "$folder/room.json" --window >"$folder/said.txt" 2>"$folder/errors" & page=$!; }
 press() { window=$(xdotool search --name "Planlight doctor" | tail -1); xdotool windowfocus "$window" key "$1"; }
-subjects() { grep -E '^(good|look|STOP) ' "$1" | sed -E 's/^[^ ]+ +//; s/  .*//'; }
+subjects() { grep -E '^(good|look|STOP) ' "$1" | sed -E 's/^[^ ]+ +//; s/  .*//' | grep -v ', focus'; }  # of that there is a line where light is seen
 
 "$PLANLIGHT" doctor --room "$folder/room.json" >"$folder/plain.txt" 2>"$folder/errors"; without=$?
 for size in "" "--language de --theme bright"; do

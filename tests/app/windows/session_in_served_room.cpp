@@ -35,7 +35,7 @@ using namespace std::chrono_literals;
 using test::expect;
 
 constexpr int kUpdates = 30, kMeasuredEvery = 5;
-constexpr int kMovingUpdates = 150, kMovingMeasuredEvery = 5;
+constexpr int kMovingUpdates = 75, kMovingMeasuredEvery = 5;
 constexpr double kSpeed_mm_s = 20;  // as in the demo
 // Poses through the wire are older when they are drawn with, by what the frames take: at 20 mm/s the prediction of a
 // head that turns round is wrong by a few tenths.
