@@ -175,12 +175,11 @@ int run_register(const RegisterOptions& options) {
         throw CheckFailedError(
             fmt::format("{}: {}", bad_rig ? "the match may not be used" : "the patient was not found",
                         fmt::join(result.reasons, "; ")),
-            bad_rig
-                ? result.rig->remedy
-                : std::string(
-                      "Scan again from a side that shows more of the head, and check that this is the patient of the "
-                      "case.") +
-                      (cloud ? hint_of_unit(*cloud, options.unit) : std::string()));
+            bad_rig ? result.rig->remedy
+                    : std::string("Take cloth and hands away from the head, scan again from a side that shows more of "
+                                  "it, and check "
+                                  "that this is the patient of the case.") +
+                          (cloud ? hint_of_unit(*cloud, options.unit) : std::string()));
     return 0;
 }
 

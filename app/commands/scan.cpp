@@ -114,13 +114,17 @@ nlohmann::json json_of(const ScanMovement& movement) {
 std::string said_of_light(const ScanMovement& movement) {
     constexpr double kSteady = 0.03;
     if (movement.by != ScanMovement::By::pictures || movement.light_change < kSteady) return {};
-    return fmt::format("; the light changed by {:.0f} % meanwhile, which can look like a movement",
-                       100 * movement.light_change);
+    constexpr double kMeasured = 0.5;  // of more only that it is much is known
+    const std::string by =
+        movement.light_change > kMeasured ? "more than half" : fmt::format("{:.0f} %", 100 * movement.light_change);
+    return fmt::format("; the light changed by {} meanwhile, which can look like a movement", by);
 }
 
 void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
     if (movement.by == ScanMovement::By::nothing) {
-        warn("whether the patient moved during the scan is not known: too little is seen under even light");
+        warn(
+            "whether the patient moved during the scan is not known: too little is seen under light that is even and "
+            "alike in all pictures");
         return;
     }
     if (movement.way_mm() <= options.max_movement_mm) {
@@ -141,11 +145,14 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
                                  movement.moved_mm),
         options.max_movement_mm, said_of_gamma(movement.camera_gamma), said_of_light(movement));
     if (!options.accept_movement)
-        throw CheckFailedError(problem, said_of_light(movement).empty()
-                                            ? "Scan again, or take the cloud as it is with --accept-movement."
-                                            : "Let nobody switch or shade a lamp, take an exposure of whole cycles of "
-                                              "the lamps' flicker, and scan again; or take the cloud as it is with "
-                                              "--accept-movement.");
+        throw CheckFailedError(problem,
+                               said_of_light(movement).empty()
+                                   ? "Scan again, or take the cloud as it is with --accept-movement."
+                                   : "Let nobody switch or shade a lamp, switch off what camera and projector do "
+                                     "to their pictures by themselves (sharpening, contrast, a lamp that "
+                                     "follows the picture), take an exposure of whole cycles of "
+                                     "the lamps' flicker, and scan again; or take the cloud as it is with "
+                                     "--accept-movement.");
     warn(problem);
 }
 

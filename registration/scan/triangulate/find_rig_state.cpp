@@ -111,6 +111,13 @@ std::string size_of(const Explanation& best, const RigState& state) {
     return text;
 }
 
+constexpr const char* kGoOn =
+    "The cloud is made, the patient followed and the light drawn with the rig as it stands now; calibrate it again as "
+    "soon as there is time.";
+constexpr const char* kStop = "No light is drawn with it: calibrate the rig again.";
+/// What a lens and a picture that is drawn larger do to the light is the same.
+constexpr const char* kSeeFirst = " See first that no keystone correction and no scaling of the picture is on.";
+
 void judge(const Explanation& best, const std::vector<const Explanation*>& possible, const RigStateSettings& settings,
            RigState& state) {
     const bool fits = best.usual <= settings.max_usual_residual;
@@ -124,11 +131,8 @@ void judge(const Explanation& best, const std::vector<const Explanation*>& possi
     state.sentence +=
         fits ? fmt::format("; light may be off by up to {:.2f} mm without a sign of it", state.hidden_light_mm)
              : "; the devices fit each other from no place";
-    state.remedy =
-        state.verdict == RigState::Verdict::corrected
-            ? "The cloud is made, the patient followed and the light drawn with the rig as it stands now; calibrate it "
-              "again as soon as there is time."
-            : "No light is drawn with it: calibrate the rig again.";
+    state.remedy = state.verdict == RigState::Verdict::corrected ? kGoOn : kStop;
+    if (contains(best.lens, RigDevice::projector)) state.remedy += kSeeFirst;
 }
 
 /// Whether no device stands or sees so differently that it cannot have been moved by accident.
@@ -167,8 +171,11 @@ void take_moved(const RigCalibration& rig, const RigFits& fits, const std::vecto
     judge(best, possible, settings, state);
     if (state.verdict != RigState::Verdict::corrected || is_a_bump(rig, state)) return;
     state.verdict = RigState::Verdict::not_trusted;
-    state.sentence += "; that is more than a bump: another rig, or a code that begins elsewhere";
-    state.remedy = "Use the rig.json of this rig, say in capture.json where its code begins, or calibrate it again.";
+    state.sentence +=
+        "; that is more than a bump: another rig, a picture under keystone correction, or a code that begins elsewhere";
+    state.remedy =
+        "Use the rig.json of this rig, switch keystone correction and scaling off, say in capture.json where its code "
+        "begins, or calibrate it again.";
 }
 
 /// How far the cameras' rays miss each other, sigmas of their pixels: the usual place.

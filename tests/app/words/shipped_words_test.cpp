@@ -314,6 +314,8 @@ TEST_P(ShippedWords, SayWholeSentencesAsASessionPutsThemTogether) {
           "its "
           "focal length)",
           "the projector and the left camera moved since the calibration of today (by 0.31 mm and 0.012 degrees)",
+          "that is more than a bump: another rig, a picture under keystone correction, or a code that begins "
+          "elsewhere.",
           "the left camera's frames do not show the sequence: white is not the brightest (12 % of the lit pixels).",
           "the last match is not used: the markers are not as they were: the markers seen do not determine a pose.",
           "the last match is not used: the rig has moved since: the projector moved since the calibration (by 3.1 mm "

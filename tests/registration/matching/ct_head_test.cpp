@@ -90,21 +90,30 @@ TEST(CtHead, AFaceThatSaggedIsAskedAboutByHowItsPlacesStand) {
     if (!head) GTEST_SKIP() << "the package invesalius-examples is not installed";
     RegistrationSettings without;
     without.max_skin_spread_mm = 100;
-    int wrong = 0, wrong_without = 0, told_by_it = 0;
+    without.shift_by_spread = 0;
+    int wrong = 0, wrong_without = 0, told_by_it = 0, within = 0, within_without = 0;
     for (unsigned i = 0; i < 24; ++i) {
         const RigidTransform rig_from_ct = random_pose(i + 90);
         const PointCloud sagged = with_moved_skin(ct_view(*head, i, 170, 12000), "sag", i % 4 == 3 ? 0 : 1.1, i);
         const PointCloud cloud = spoiled(moved(sagged, rig_from_ct), 0.15, 0.02, i);
         const RegistrationResult result = register_patient(cloud, head->lut);
-        const bool off = target_error_mm(result.patient_from_ct.inverse(), rig_from_ct.inverse(), cloud) > 1;
-        wrong += off && result.verdict == Verdict::yes;
-        wrong_without += off && register_patient(cloud, head->lut, without).verdict == Verdict::yes;
+        const RegistrationResult unaware = register_patient(cloud, head->lut, without);
+        const double off_mm = target_error_mm(result.patient_from_ct.inverse(), rig_from_ct.inverse(), cloud);
+        wrong += off_mm > 1 && result.verdict == Verdict::yes;
+        wrong_without += off_mm > 1 && unaware.verdict == Verdict::yes;
+        const auto bound_mm = [](const RegistrationResult& r) {
+            return predicted_error(r.covariance, r.covariance.centre_in_ct).bound_95_mm;
+        };
+        within += off_mm <= bound_mm(result);
+        within_without += off_mm <= bound_mm(unaware);
         for (const std::string& reason : result.reasons)
             told_by_it += reason.find("places of the skin lie") != std::string::npos;
         if (i % 4 == 3) {
             EXPECT_EQ(result.verdict, Verdict::yes) << "the skin is still";
+            EXPECT_LT(bound_mm(result), 1.05 * bound_mm(unaware)) << "and no reason to be less sure";
         }
     }
+    EXPECT_GE(within, within_without + 4) << "the bound knows of the spread";
     EXPECT_GT(told_by_it, 0);
     EXPECT_LE(wrong, 2) << "of 18 that sagged";
     EXPECT_GE(wrong_without, wrong + 4);
