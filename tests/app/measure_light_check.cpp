@@ -3,8 +3,8 @@
 // measure_light_check paper|modern FIRST COUNT
 // measure_light_check paper|modern FIRST COUNT session: whole sessions instead (scan, match, tracking), at rest and
 // with the head moving at up to 20 and 50 mm/s: what CHECK measured in each frame against where the light of the
-// picture that was lit in it truly fell at that moment, as 95 % of the light; and what an update's CHECK costs, with the
-// projector covered as well, where it seeks the light farther aside.
+// picture that was lit in it truly fell at that moment, as 95 % of the light; and what an update's CHECK costs, with
+// the projector covered as well, where it seeks the light farther aside.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -78,8 +78,8 @@ TEST(CtHead, ABroadSwellingOfOneSideIsAskedAboutWhereItLeadsAstray) {
         }
     }
     EXPECT_GT(astray, 0) << "nothing leads astray here: this test tells nothing";
-    EXPECT_LE(asked, 12);
-    EXPECT_GE(accepted, 12);
+    EXPECT_LE(asked, 14);
+    EXPECT_GE(accepted, 10);
 }
 
 // The pose follows a face that sagged as a whole, and little of that is left as movement of the skin. Those whose
