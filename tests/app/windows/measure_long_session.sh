@@ -73,5 +73,6 @@ unaccounted=$(($exposed - ($updates - 1 - $pauses + $skipped + $missed)))
 echo "exposures while following: $exposed in $followed s; updates $updates (lit $(figure lit), later than 30 ms $(figure later_than_30_ms)), skipped $skipped, missed $missed; $pauses pauses of $(figure paused_s) s in all"
 grep '"dark"' "$folder/session.json"
 # The room exposes by its own clock, the session counts by its cameras' clocks on its own: a thousandth for their difference.
+check "it followed the patient for most of the time" "$(is "$followed > 30 * $minutes")" "$followed s of $minutes minutes"
 check "every exposure is accounted for, but $unaccounted" "$(is "$updates > 0 && $unaccounted * $unaccounted <= (2 + $exposed / 1000) ^ 2")" "of $exposed"
 end
