@@ -2,36 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <random>
-
-#include "projection/error_figure.h"
+#include "tests/projection/light_gate_scenes.h"
 
 namespace planlight {
 namespace {
 
 using namespace std::chrono_literals;
-
-LightCheck seen_at(double off_mm, int seen = 40, int expected = 40) {
-    LightCheck check;
-    check.expected = expected;
-    check.seen = seen;
-    check.off_mm = check.most_mm = off_mm;
-    check.sigma_mm = 0.05;
-    check.told_whole = true;
-    return check;
-}
-
-ItemLight item(const std::string& name, int seen, int segments, double off_mm, bool lit = true) {
-    ItemLight light;
-    light.name = name;
-    light.lit = lit;
-    light.segments = segments;
-    light.seen = seen;
-    light.off_mm = off_mm;
-    return light;
-}
+using test::item;
+using test::seen_at;
 
 /// Updates 40 ms apart with the same measurement; the last ruling.
 LightGate::Ruling after(LightGate& gate, Instant& now, int updates, const std::optional<LightCheck>& check,
@@ -294,108 +272,6 @@ TEST(LightGate, SkinThatLiesElsewhereStopsTheLightUntilTheNextMatch) {
     EXPECT_TRUE(after(gate, now, 1, seen_at(0.1)).stop) << "Track does not mend it";
     gate.new_match();
     EXPECT_FALSE(after(gate, now, 1, seen_at(0.1)).stop);
-}
-
-/// What CHECK makes of light that lies aside by `shift_mm` (along the skin), as `measure_light_check` found it to err:
-/// 0.1 mm a stretch, one stretch in fifty something else within reach, nothing found beyond 3 mm.
-LightCheck drawn_check(const Eigen::Vector2d& shift_mm, double covered, bool one_way, std::mt19937& random) {
-    std::normal_distribution<double> noise(0, 0.1);
-    std::uniform_real_distribution<double> any(-3, 3), share(0, 1);
-    LightCheck check;
-    check.expected = std::uniform_int_distribution<int>(12, 60)(random);
-    std::vector<double> sizes;
-    for (int i = 0; i < check.expected; ++i) {
-        const double angle = one_way ? 0.02 * any(random) : 2 * any(random);
-        const double off_mm = shift_mm.dot(Eigen::Vector2d(std::cos(angle), std::sin(angle))) + noise(random);
-        if (share(random) < covered || std::abs(off_mm) > 3) continue;
-        sizes.push_back(std::abs(share(random) < 0.02 ? any(random) : off_mm));
-    }
-    std::sort(sizes.begin(), sizes.end());
-    const auto at = [&](double q) {
-        return sizes.empty() ? 0 : sizes[static_cast<std::size_t>(q * static_cast<double>(sizes.size() - 1))];
-    };
-    check.seen = static_cast<int>(sizes.size());
-    check.off_mm = at(0.95);
-    check.most_mm = at(2.0 / 3);
-    check.told_whole = !one_way && check.seen >= 3;
-    return check;
-}
-
-// "up to 2.0 mm" in the headline beside "2.1 mm" at its right would be two figures of one thing.
-TEST(LightGate, AFigureIsSaidAsTheBannerSaysIt) {
-    for (const double off_mm : {1.02, 1.5, 2.02, 2.04, 2.6}) {
-        LightGate gate;
-        LightCheck check = seen_at(off_mm);
-        check.most_mm = 0.9;  // so that the light stays
-        const auto ruling = gate.step(1s, true, check);
-        const std::string figure = error_figure(*ruling.off_mm, {1, 2});
-        EXPECT_NE(ruling.headline.find("up to " + figure + " mm"), std::string::npos) << ruling.headline;
-        EXPECT_FALSE(ruling.of_other);
-    }
-    EXPECT_EQ(error_figure(2.02, {1, 2}), "2.1");
-}
-
-TEST(LightGate, WhyItIsDarkIsStillSaidWithItsFigureWhenTheLightIsOut) {
-    LightGate gate;
-    gate.step(1s, true, seen_at(7.3));
-    EXPECT_TRUE(gate.step(2s, true, seen_at(7.3)).stop);
-    EXPECT_EQ(gate.step(3s, false, std::nullopt).headline, "Dark: the light lay 7.3 mm beside the plan.");
-    ASSERT_TRUE(gate.forbids());
-    EXPECT_EQ(gate.forbids()->headline, "Dark: the light lay 7.3 mm beside the plan.");
-}
-
-TEST(LightGate, WhatTheSkinOrAnItemIsOffIsNotGivenAsMeasuredOfTheLight) {
-    LightGate gate;
-    gate.skin_checked(1.6);
-    const auto by_skin = gate.step(1s, true, seen_at(0.3));
-    EXPECT_NE(by_skin.headline.find("1.6 mm"), std::string::npos) << by_skin.headline;
-    EXPECT_TRUE(by_skin.of_other);
-    EXPECT_DOUBLE_EQ(by_skin.off_mm.value_or(0), 0.3);
-    LightGate other;
-    LightCheck check = seen_at(0.3);
-    check.items = {item("B1", 10, 10, 1.4)};
-    const auto by_item = other.step(1s, true, check);
-    EXPECT_NE(by_item.headline.find("1.4 mm"), std::string::npos) << by_item.headline;
-    EXPECT_TRUE(by_item.of_other);
-    EXPECT_DOUBLE_EQ(by_item.off_mm.value_or(0), 0.3);
-}
-
-// 100,000 situations: light that begins to lie aside by up to 6 mm in any direction, wholly or partly covered, drawn by
-// strokes that run every way or one way only. Light more than 2 mm off is green in less than one in a thousand after
-// half a second; good light that is seen is never put out.
-TEST(LightGate, WrongLightIsNotGreenAndGoodLightIsNotDark) {
-    std::mt19937 random(1);
-    std::uniform_real_distribution<double> size_mm(0, 6), angle(0, 6.2832), share(0, 1);
-    int wrong = 0, wrong_and_green = 0, good = 0, good_and_dark = 0, good_and_green = 0;
-    for (int run = 0; run < 100000; ++run) {
-        LightGate gate;
-        Instant now{};
-        gate.verify(now);
-        const bool one_way = share(random) < 0.2;
-        for (int i = 0; i < 5; ++i) gate.step(now += 120ms, true, drawn_check({0, 0}, 0, one_way, random));
-        const double off_mm = share(random) < 0.3 ? 0.3 * share(random) : size_mm(random);
-        const double covered = share(random) < 0.5 ? 0 : share(random), a = angle(random);
-        LightGate::Ruling ruling;
-        for (int i = 0; i < 5 && !ruling.stop; ++i)
-            ruling =
-                gate.step(now += 120ms, true,
-                          drawn_check(off_mm * Eigen::Vector2d(std::cos(a), std::sin(a)), covered, one_way, random));
-        if (off_mm > 2) {
-            ++wrong;
-            wrong_and_green += ruling.trust == LightTrust::aligned;
-        } else if (off_mm <= 0.3) {
-            ++good;
-            good_and_dark += ruling.stop;
-            good_and_green += ruling.trust == LightTrust::aligned;
-        }
-    }
-    RecordProperty("wrong", wrong);
-    RecordProperty("good_and_green", good_and_green);
-    EXPECT_GT(wrong, 40000);
-    EXPECT_GT(good, 20000);
-    EXPECT_LT(wrong_and_green, wrong / 1000) << "of " << wrong;
-    EXPECT_LT(good_and_dark, good / 200) << "of " << good;
-    EXPECT_GT(good_and_green, good / 3) << "of " << good << ", a half covered in part and a fifth one way";
 }
 
 }  // namespace
