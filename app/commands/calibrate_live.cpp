@@ -84,13 +84,8 @@ public:
         : calibration_(calibration), subtitle_(std::move(subtitle)), screenshots_(options.screenshots) {
         note_end_signals();
         if (options.headless) return;
-        const SiteSettings site = read_site_settings();
-        WindowSettings settings = settings_of_window(options.language, options.theme, site);
-        settings.title = "Planlight calibration";
-        const std::string& monitor =
-            options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
-        if (!monitor.empty()) settings.monitor = monitor;
-        window_ = std::make_unique<GuideWindow>(settings);
+        window_ = std::make_unique<GuideWindow>(
+            settings_of_page("Planlight calibration", options.language, options.theme, options.operator_monitor));
         if (!screenshots_.empty()) make_folder(screenshots_);
     }
 

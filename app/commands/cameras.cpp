@@ -105,15 +105,6 @@ int say_once(const CamerasOptions& options, CameraWatch& watch, TestLight* light
     return 0;
 }
 
-WindowSettings window_settings(const CamerasOptions& options) {
-    const SiteSettings site = read_site_settings();
-    WindowSettings settings = settings_of_window(options.language, options.theme, site);
-    settings.title = "Planlight cameras";
-    const std::string& monitor = options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
-    if (!monitor.empty()) settings.monitor = monitor;
-    return settings;
-}
-
 /// The light of the page; without one its buttons say why.
 struct PageLight {
     std::unique_ptr<TestLight> light;
@@ -141,7 +132,7 @@ struct PageLight {
 int show_page(const CamerasOptions& options, const RoomFile& room, RoomCameras& cameras, CameraWatch& watch,
               const Clock& clock) {
     constexpr double kLongestRest_s = 0.05;
-    CameraPage page(window_settings(options));
+    CameraPage page(settings_of_page("Planlight cameras", options.language, options.theme, options.operator_monitor));
     std::jthread looking([&](const std::stop_token& stop) { watch.run(stop); });
     const PageLight light(room, cameras, clock);  // on every way out the first to go
     light.show(*test_picture_of(options.show));

@@ -6,23 +6,10 @@
 #include "planning_io/files/image_file.h"
 
 namespace planlight {
-namespace {
-
-WindowSettings window_settings(const DoctorOptions& options) {
-    const SiteSettings site = read_site_settings();
-    WindowSettings settings = settings_of_window(options.language, options.theme, site);
-    settings.title = "Planlight doctor";
-    const std::string& monitor = options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
-    if (!monitor.empty()) settings.monitor = monitor;
-    return settings;
-}
-
-}  // namespace
-
 ExaminationState show_doctor_page(const DoctorOptions& options, const RoomFile& room) {
     constexpr double kLongestRest_s = 0.05;
     note_end_signals();
-    DoctorPage page(window_settings(options));
+    DoctorPage page(settings_of_page("Planlight doctor", options.language, options.theme, options.operator_monitor));
     ExamineSettings examine;
     examine.case_folder = options.case_folder;
     auto examination = std::make_unique<RunningExamination>(room, examine);

@@ -46,4 +46,14 @@ WindowSettings settings_of_window(const std::string& language, const std::string
     return settings;
 }
 
+WindowSettings settings_of_page(const std::string& title, const std::string& language, const std::string& theme,
+                                const std::string& operator_monitor) {
+    const SiteSettings site = read_site_settings();
+    WindowSettings settings = settings_of_window(language, theme, site);
+    settings.title = title;
+    const std::string& monitor = operator_monitor.empty() ? site.operator_monitor : operator_monitor;
+    if (!monitor.empty()) settings.monitor = monitor;
+    return settings;
+}
+
 }  // namespace planlight

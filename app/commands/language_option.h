@@ -28,6 +28,9 @@ ThemeKind theme_of_window(const std::string& option, const SiteSettings& site);
 
 /// A window with the language and the theme that were asked for, else the site's.
 WindowSettings settings_of_window(const std::string& language, const std::string& theme, const SiteSettings& site);
+/// The same of a page of its own, on the monitor that the option names, else the site's, else the primary one.
+WindowSettings settings_of_page(const std::string& title, const std::string& language, const std::string& theme,
+                                const std::string& operator_monitor);
 
 /// The words of a window: those of the option, refused when there are none; else those of the site, or English with a
 /// warning, since a patient does not wait for a translation. What a file lacks is said, and shown in English.

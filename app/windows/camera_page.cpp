@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <optional>
-#include <utility>
 
 #include "app/windows/camera_page_panels.h"
 #include "app/windows/camera_texture.h"
 #include "app/windows/exposure_overlay.h"
 #include "app/windows/gui_window.h"
 #include "app/windows/operator_keys.h"
+#include "app/windows/page_input.h"
 
 namespace planlight {
 namespace {
@@ -60,8 +60,7 @@ private:
 }  // namespace
 
 struct CameraPage::Parts {
-    CameraPageAction pressed = CameraPageAction::none;
-    bool dark_pressed = false;
+    PageInput<CameraPageAction> input;
     CameraPageLayout place;
     GuiWindow gui;
     OverlaidPicture left{gui}, right{gui};
@@ -71,17 +70,10 @@ struct CameraPage::Parts {
     Parts(const Parts&) = delete;
     Parts& operator=(const Parts&) = delete;
 
-    /// DARK is taken from the events themselves, so that a press shorter than a frame is not lost.
     WindowListener listener() {
-        return {[this](int key, int) {
-                    const CameraPageAction action = action_of(key);
-                    if (action == CameraPageAction::dark)
-                        dark_pressed = true;
-                    else if (action != CameraPageAction::none)
-                        pressed = action;
-                },
+        return {[this](int key, int) { input.press(action_of(key)); },
                 [this](double x, double y) {
-                    if (place.dark.contains(x, y)) dark_pressed = true;
+                    if (place.dark.contains(x, y)) input.press(CameraPageAction::dark);
                 }};
     }
 };
@@ -92,10 +84,7 @@ CameraPage::~CameraPage() = default;
 CameraPageAction CameraPage::frame(const CameraPageModel& model) {
     Parts& parts = *parts_;
     parts.gui.take_input(0);
-    if (std::exchange(parts.dark_pressed, false)) {
-        parts.pressed = CameraPageAction::none;
-        return CameraPageAction::dark;
-    }
+    if (parts.input.take_dark()) return CameraPageAction::dark;
     if (parts.gui.asked_to_close()) return CameraPageAction::quit;
     CameraPageAction wanted = CameraPageAction::none;
     const bool changed = !parts.drawn || !(*parts.drawn == model) || parts.gui.touched();
@@ -108,7 +97,7 @@ CameraPageAction CameraPage::frame(const CameraPageModel& model) {
                                  {texture_id(parts.left.take(model.left.picture, parts.place.picture[0].width)),
                                   texture_id(parts.right.take(model.right.picture, parts.place.picture[1].width))});
         });
-    const CameraPageAction pressed = std::exchange(parts.pressed, CameraPageAction::none);
+    const CameraPageAction pressed = parts.input.take();
     if (wanted_picture(pressed) && !model.no_light.empty()) return wanted;
     return pressed == CameraPageAction::none ? wanted : pressed;
 }

@@ -5,11 +5,11 @@
 #include <imgui.h>
 
 #include <optional>
-#include <utility>
 
 #include "app/windows/doctor_page_panels.h"
 #include "app/windows/gui_window.h"
 #include "app/windows/operator_keys.h"
+#include "app/windows/page_input.h"
 
 namespace planlight {
 namespace {
@@ -23,8 +23,7 @@ DoctorPageAction action_of(int key) {
 }  // namespace
 
 struct DoctorPage::Parts {
-    DoctorPageAction pressed = DoctorPageAction::none;
-    bool dark_pressed = false;
+    PageInput<DoctorPageAction> input;
     DoctorPageLayout place;
     DoctorPageScroll scroll;
     GuiWindow gui;
@@ -34,21 +33,15 @@ struct DoctorPage::Parts {
     Parts(const Parts&) = delete;
     Parts& operator=(const Parts&) = delete;
 
-    /// DARK is taken from the events themselves, so that a press shorter than a frame is not lost.
     WindowListener listener() {
-        return {[this](int key, int) { take_key(key); },
+        return {[this](int key, int) {
+                    input.press(action_of(key));
+                    move_lines(key);
+                },
                 [this](double x, double y) {
-                    if (place.dark.contains(x, y)) dark_pressed = true;
+                    if (place.dark.contains(x, y)) input.press(DoctorPageAction::dark);
                 },
                 [this](int key) { move_lines(key); }};
-    }
-    void take_key(int key) {
-        const DoctorPageAction action = action_of(key);
-        if (action == DoctorPageAction::dark)
-            dark_pressed = true;
-        else if (action != DoctorPageAction::none)
-            pressed = action;
-        move_lines(key);
     }
     void move_lines(int key) {
         const int by = key == GLFW_KEY_DOWN ? 1 : key == GLFW_KEY_UP ? -1 : 0;
@@ -77,10 +70,7 @@ DoctorPage::~DoctorPage() = default;
 DoctorPageAction DoctorPage::frame(const DoctorPageModel& model) {
     Parts& parts = *parts_;
     parts.gui.take_input(0);
-    if (std::exchange(parts.dark_pressed, false)) {
-        parts.pressed = DoctorPageAction::none;
-        return DoctorPageAction::dark;
-    }
+    if (parts.input.take_dark()) return DoctorPageAction::dark;
     if (parts.gui.asked_to_close()) return DoctorPageAction::quit;
     DoctorPageAction wanted = DoctorPageAction::none;
     const bool changed = !parts.drawn || !(*parts.drawn == model);
@@ -94,7 +84,7 @@ DoctorPageAction DoctorPage::frame(const DoctorPageModel& model) {
             parts.place = doctor_page_layout(w, h, pen.scale);
             wanted = draw_doctor_page(pen, parts.place, model, parts.scroll);
         });
-    const DoctorPageAction pressed = std::exchange(parts.pressed, DoctorPageAction::none);
+    const DoctorPageAction pressed = parts.input.take();
     if (pressed == DoctorPageAction::again && !model.over()) return wanted;
     return pressed == DoctorPageAction::none ? wanted : pressed;
 }

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <utility>
+
+namespace planlight {
+
+/// What was pressed on a page between two of its frames. `Action` has `none` and `dark`.
+///
+/// DARK is taken from the events themselves, so that a press shorter than a frame is not lost, and comes before
+/// whatever else was pressed.
+template <typename Action>
+class PageInput {
+public:
+    /// Of a key, as it goes down.
+    void press(Action action) {
+        if (action == Action::dark)
+            dark_ = true;
+        else if (action != Action::none)
+            pressed_ = action;
+    }
+    /// Whether DARK was pressed since it was asked last; then all else is forgotten.
+    bool take_dark() {
+        if (!std::exchange(dark_, false)) return false;
+        pressed_ = Action::none;
+        return true;
+    }
+    Action take() { return std::exchange(pressed_, Action::none); }
+
+private:
+    Action pressed_ = Action::none;
+    bool dark_ = false;
+};
+
+}  // namespace planlight
