@@ -3,18 +3,8 @@
 # whose projector is the second monitor: its test picture stands there pixel by pixel, goes out when the page ends, and when it is
 # stopped or killed. $PLANLIGHT is the program. Leaves screenshots in FOLDER.
 folder=$1
-failed=0
-check() { if [ "$2" = 1 ]; then echo "ok   $1"; else echo "FAIL $1 ($3)"; failed=1; fi; }
-is() { awk "BEGIN { print ($1) ? 1 : 0 }"; }
-rm -rf "$folder/frames" "$folder"/*.png "$folder"/*.json
-mkdir -p "$folder/frames/left" "$folder/frames/right"
-list=
-for i in 0 1 2 3 4; do
-  for side in left right; do convert -size 320x240 -seed $i plasma:grey30-grey70 -colorspace Gray "$folder/frames/$side/$i.png" || exit 77; done
-  list="$list${list:+, }{\"picture\": \"$i.png\", \"number\": $i, \"at_ns\": $((i * 40000000)), \"exposure_ns\": 5000000}"
-done
-echo "{\"format\": \"planlight frames\", \"version\": 1, \"frames\": [$list]}" >"$folder/frames/frames.json"
-echo '{"format": "planlight room", "version": 1, "rig": "rig.json", "projector": {"monitor": "DUMMY1"}, "cameras": {"recorded": {"frames": "frames"}}}' >"$folder/room.json"
+. "$(dirname "$0")/recorded_room.sh"
+recorded_room "$folder"
 light() { import -window root -crop 800x600+1920+0 +repage "$folder/$1.png"; }
 grey() { convert "$folder/$1.png" -colorspace Gray -depth 8 -format "%[fx:round(255*p{$2,$3}.r)]" info:; }
 brightest() { convert "$folder/$1.png" -colorspace Gray -format '%[fx:round(255*maxima)]' info:; }

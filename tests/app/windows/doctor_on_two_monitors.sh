@@ -4,18 +4,8 @@
 # screenshots in FOLDER.
 folder=$1
 command -v xdotool >/dev/null || { echo "skipped: xdotool is not installed"; exit 77; }
-failed=0
-check() { if [ "$2" = 1 ]; then echo "ok   $1"; else echo "FAIL $1 ($3)"; failed=1; fi; }
-is() { awk "BEGIN { print ($1) ? 1 : 0 }"; }
-rm -rf "$folder/frames" "$folder"/*.png "$folder"/*.json "$folder"/*.txt
-mkdir -p "$folder/frames/left" "$folder/frames/right"
-list=
-for i in 0 1 2 3 4; do
-  for side in left right; do convert -size 320x240 -seed $i plasma:grey30-grey70 -colorspace Gray "$folder/frames/$side/$i.png" || exit 77; done
-  list="$list${list:+, }{\"picture\": \"$i.png\", \"number\": $i, \"at_ns\": $((i * 40000000)), \"exposure_ns\": 5000000}"
-done
-echo "{\"format\": \"planlight frames\", \"version\": 1, \"frames\": [$list]}" >"$folder/frames/frames.json"
-echo '{"format": "planlight room", "version": 1, "rig": "rig.json", "projector": {"monitor": "DUMMY1"}, "cameras": {"recorded": {"frames": "frames"}}}' >"$folder/room.json"
+. "$(dirname "$0")/recorded_room.sh"
+recorded_room "$folder"
 brightest() { import -window root -crop 800x600+1920+0 +repage -colorspace Gray -format '%[fx:round(255*maxima)]' info:; }
 lit() { for i in $(seq 150); do [ "$(brightest)" = 255 ] && return 0; sleep 0.1; done; return 1; }
 stays_dark() {  # within so many tenths of a second, and for a second from then on
