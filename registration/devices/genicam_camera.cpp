@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "planning_io/types/error.h"
+#include "registration/devices/genicam_automatics.h"
 #include "registration/devices/genicam_failure.h"
 #include "registration/devices/mono_pixels.h"
-#include "registration/devices/plain_picture.h"
 
 namespace planlight {
 namespace {

@@ -150,7 +150,7 @@ constexpr const char* kSaying[] = {
     "registration/scan/triangulate/find_rig_state.cpp",
     "registration/devices/paired_cameras.cpp",
     "registration/devices/genicam_camera.cpp",
-    "registration/devices/plain_picture.cpp",
+    "registration/devices/genicam_automatics.cpp",
     "registration/devices/gstreamer_camera.cpp",
     "registration/devices/recorded_camera.cpp",
     "registration/devices/recorded_projector.cpp",

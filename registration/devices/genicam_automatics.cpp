@@ -1,4 +1,4 @@
-#include "registration/devices/plain_picture.h"
+#include "registration/devices/genicam_automatics.h"
 
 #include <fmt/format.h>
 

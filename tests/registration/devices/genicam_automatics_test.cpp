@@ -1,4 +1,4 @@
-#include "registration/devices/plain_picture.h"
+#include "registration/devices/genicam_automatics.h"
 
 #include <arv.h>
 #include <fmt/format.h>
@@ -68,7 +68,7 @@ private:
 
 constexpr int kFree = 0x9000;  // registers that the plain camera does not use
 
-TEST(PlainPicture, AShutterThatCanBeGlobalIsSoAndOneThatCannotIsSaid) {
+TEST(GenicamAutomatics, AShutterThatCanBeGlobalIsSoAndOneThatCannotIsSaid) {
     const OneAtATime turn;
     {
         CameraWithFeatures can(feature("SensorShutterMode", {"Global", "Rolling"}, kFree), kFree, 1);
@@ -81,7 +81,7 @@ TEST(PlainPicture, AShutterThatCanBeGlobalIsSoAndOneThatCannotIsSaid) {
     EXPECT_NE(notes[0].find("its shutter rolls"), std::string::npos) << notes[0];
 }
 
-TEST(PlainPicture, ATestPictureIsSwitchedOffAndAMirroredPictureIsSaid) {
+TEST(GenicamAutomatics, ATestPictureIsSwitchedOffAndAMirroredPictureIsSaid) {
     const OneAtATime turn;
     {
         CameraWithFeatures shown(feature("TestPattern", {"Off", "GreyHorizontalRamp"}, kFree), kFree, 1);
