@@ -30,17 +30,17 @@ protected:
         room_.recorded = RoomRecording{};
         room_.recorded->frames = folder_.path() / "frames";
     }
-    static ExamineSettings quick() {
+    static ExamineSettings quick(Instant watch = milliseconds(200)) {
         ExamineSettings settings;
-        settings.watch = milliseconds(200);
+        settings.watch = watch;
         return settings;
     }
-    /// As the loop of a window does, until `ready` or for twenty seconds.
+    /// As the loop of a window does, until `ready` or for twenty seconds; or as one that answers nothing.
     template <typename Ready>
-    bool watch(RunningExamination& examination, const Ready& ready) {
+    bool watch(RunningExamination& examination, const Ready& ready, bool answers = true) {
         const Instant until = clock_.now() + std::chrono::seconds(20);
         while (clock_.now() < until) {
-            examination.answer();
+            if (answers) examination.answer();
             if (ready(examination.state())) return true;
             std::this_thread::sleep_for(milliseconds(5));
         }
@@ -63,7 +63,7 @@ TEST_F(RunningExaminationTest, FindsTheLinesThatAnExaminationWithoutAWindowFinds
 }
 
 TEST_F(RunningExaminationTest, ALineIsThereBeforeTheNextStepEnds) {
-    RunningExamination examination(room_, quick());
+    RunningExamination examination(room_, quick(std::chrono::seconds(2)));
     EXPECT_TRUE(watch(examination, [](const ExaminationState& state) {
         return state.under_way == "the cameras" && !state.over && !state.lines.empty();
     }));
@@ -72,8 +72,11 @@ TEST_F(RunningExaminationTest, ALineIsThereBeforeTheNextStepEnds) {
 // The window system may be asked from the main thread alone.
 TEST_F(RunningExaminationTest, WaitsForAnAnswerOfTheWindowSystem) {
     RunningExamination examination(room_, quick());
-    std::this_thread::sleep_for(milliseconds(300));
-    EXPECT_EQ(examination.state().under_way, "this computer");
+    const bool asks = watch(
+        examination, [](const ExaminationState& state) { return state.under_way == "this computer"; }, false);
+    EXPECT_TRUE(asks);
+    std::this_thread::sleep_for(milliseconds(50));
+    EXPECT_EQ(examination.state().under_way, "this computer") << "nobody answered";
     EXPECT_TRUE(examination.state().lines.empty());
     EXPECT_TRUE(watch(examination, over));
 }
