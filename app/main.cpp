@@ -50,7 +50,7 @@ int run_command(const CLI::App& command, const Run& run, const ConsoleSettings& 
 }
 
 /// Volumes and pictures come and go by the dozen. Memory that is handed back to the system each time costs a page fault
-/// for every 4 KiB when it is asked for again: a fifth of a preparation's processor time, for 2 % less memory.
+/// for every 4 KiB when it is asked for again.
 void keep_freed_memory() {
     constexpr int kMmapFrom_bytes = 32 << 20;  // the most that the library takes
     constexpr int kKept_bytes = 1 << 30;

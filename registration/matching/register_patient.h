@@ -52,8 +52,8 @@ struct RegistrationSettings {
     /// Of the skin's places about its offset (`spread_of_skin_mm`). Skin that sagged is taken for a head that
     /// lies otherwise and little of it is left as movement; what the pose cannot follow still shows here. Above: ask.
     double max_skin_spread_mm = 0.25;
-    /// What of that spread is more than still skin shows (0.02 to 0.16 mm) stands for a shift of the pose that nothing
-    /// else shows: this many times as large, one standard deviation each way, in the predicted error.
+    /// What of that spread is more than still skin usually shows stands for a shift of the pose that nothing else
+    /// shows: this many times as large, one standard deviation each way, in the predicted error.
     double still_skin_spread_mm = 0.15, shift_by_spread = 2;
     bool mirror_test = true;           ///< match the mirrored scan too
     double min_mirror_ratio = 1.15;    ///< of the mirrored scan's cost; below: ask
