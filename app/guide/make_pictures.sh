@@ -1,7 +1,7 @@
 #!/bin/bash
 # make_pictures.sh PLANLIGHT [FOLDER]: makes the pictures of this guide anew, as the program's own commands show them, in the simulated room
 # (FOLDER: where all of them are put; default: where they belong). Needs xvfb-run, xdotool, ImageMagick, pdftoppm (of poppler-utils) and chromium; takes some minutes. Look at each
-# before it is kept. `cameras.png` and `guided.png` are left by `tests/app/windows/two_monitors.sh` (cameras, calibrate_served_room).
+# before it is kept. `cameras.png`, `guided.png` and `doctor.png` are left by `tests/app/windows/two_monitors.sh` (cameras, calibrate_served_room, doctor).
 set -e
 here=$(cd "$(dirname "$0")" && pwd)
 program=$(realpath "$1") out=$here example=$here/../example windows=$here/../windows

@@ -76,9 +76,7 @@ void choose_shutter(Features& features, std::vector<std::string>& notes) {
     if (!features.has(kShutter)) return;
     if (features.value(kShutter) != "Global") features.choose(kShutter, "Global");
     if (features.value(kShutter) == "Rolling")
-        notes.emplace_back(
-            "its shutter rolls: rows are exposed one after the other, and a head that moves is seen bent; let it rest, "
-            "or take a camera with a global shutter");
+        notes.emplace_back("its shutter rolls: a head that moves is seen bent; take one with a global shutter");
 }
 
 /// Both together are a picture turned by half a turn, as of a camera that hangs upside down.
@@ -87,9 +85,7 @@ void look_for_mirror(Features& features, std::vector<std::string>& notes) {
                y = features.has("ReverseY") && features.is_on("ReverseY");
     if (x != y)
         notes.push_back(
-            fmt::format("its picture is mirrored (Reverse{}): no rig fits it; switch that off with the "
-                        "camera's own program",
-                        x ? "X" : "Y"));
+            fmt::format("its picture is mirrored (Reverse{}): switch that off by its own program", x ? "X" : "Y"));
 }
 
 }  // namespace

@@ -70,9 +70,7 @@ GstreamerCamera::GstreamerCamera(GstreamerSettings settings, FrameBell& bell, co
 }
 
 std::vector<std::string> GstreamerCamera::notes() const {
-    return {
-        "nothing here can tell whether it changes exposure, gain or white balance by itself, nor whether its "
-        "shutter rolls (rows one after the other: a head that moves is then seen bent): set them by its own means"};
+    return {"it cannot be asked for automatic exposure or a rolling shutter: set it up by its own means"};
 }
 
 GstreamerCamera::~GstreamerCamera() {

@@ -80,6 +80,13 @@ TEST_P(PagesInPlace, ThePageOfTheCamerasHasRoom) {
             expect_room(text_of(shown));
         }
     }
+    for (const char* note :
+         {"it cannot be asked for automatic exposure or a rolling shutter: set it up by its own means",
+          "its shutter rolls: a head that moves is seen bent; take one with a global shutter",
+          "its picture is mirrored (ReverseX): switch that off by its own program"}) {
+        model.left.notes = {note};
+        expect_room(note);
+    }
     model.left.notes = {"its gamma stays at 1.0", "its automatic gain cannot be switched off"};
     model.right.trouble = "no whole frame came from it for 500 ms, and 12 with packets lost";
     model.right.trouble_remedy =
