@@ -14,8 +14,7 @@ Case a_case() {
     made.code = "c0ffee";
     made.volume_hash = "0123456789";
     made.lut.mesh_hash = "9876543210";
-    made.plan.boreholes.push_back({});
-    made.plan.boreholes.front().position_in_ct = {0, 0, 700};
+    made.plan.boreholes.emplace_back().position_in_ct = {0, 0, 700};
     return made;
 }
 

@@ -6,7 +6,7 @@
 namespace planlight {
 namespace {
 
-using Verdict = DoctorPageModel::Verdict;
+using PageVerdict = DoctorPageModel::Verdict;
 
 ExaminationState over_with(std::vector<DoctorLine> lines) {
     ExaminationState state;
@@ -18,32 +18,32 @@ const DoctorLine kGood{"left camera, rate", Health::good, "25.0 frames a second"
     kLook{"rig, age", Health::look, "calibrated 100 days ago", "Calibrate it anew."},
     kStop{"computer, OpenGL", Health::stop, "no window can be drawn", "Install an OpenGL 3.3 driver."};
 
-Verdict verdict(const ExaminationState& state) {
+PageVerdict verdict(const ExaminationState& state) {
     return doctor_page_model_of(state, "Room").verdict;
 }
 
 TEST(DoctorScreen, TheVerdictIsThatOfTheWorstLine) {
-    EXPECT_EQ(verdict(over_with({kGood})), Verdict::good);
-    EXPECT_EQ(verdict(over_with({kLook, kGood})), Verdict::look);
-    EXPECT_EQ(verdict(over_with({kGood, kStop, kLook})), Verdict::stop);
+    EXPECT_EQ(verdict(over_with({kGood})), PageVerdict::good);
+    EXPECT_EQ(verdict(over_with({kLook, kGood})), PageVerdict::look);
+    EXPECT_EQ(verdict(over_with({kGood, kStop, kLook})), PageVerdict::stop);
 }
 
 TEST(DoctorScreen, NothingIsGoodBeforeItIsOver) {
     ExaminationState state = over_with({kGood});
     state.over = false;
-    EXPECT_EQ(verdict(state), Verdict::looking);
+    EXPECT_EQ(verdict(state), PageVerdict::looking);
     state.lines.push_back(kStop);
-    EXPECT_EQ(verdict(state), Verdict::looking);
+    EXPECT_EQ(verdict(state), PageVerdict::looking);
 }
 
 TEST(DoctorScreen, WhatWasEndedByHandIsNeverGood) {
     ExaminationState state = over_with({kGood});
     state.ended_by_hand = true;
-    EXPECT_EQ(verdict(state), Verdict::ended);
+    EXPECT_EQ(verdict(state), PageVerdict::ended);
     state.lines.push_back(kLook);
-    EXPECT_EQ(verdict(state), Verdict::ended);
+    EXPECT_EQ(verdict(state), PageVerdict::ended);
     state.lines.push_back(kStop);
-    EXPECT_EQ(verdict(state), Verdict::stop) << "what stops, stops";
+    EXPECT_EQ(verdict(state), PageVerdict::stop) << "what stops, stops";
 }
 
 TEST(DoctorScreen, EveryLineStandsThereWithItsRemedy) {
