@@ -157,7 +157,21 @@ void DrawingRenderer::Parts::draw_stroke(const Stroke& stroke, const RenderSetti
         throw InputError("", "a stroke of the drawing has not one normal per point", "Draw the plan again.");
     const double brightness = share_of(stroke.item, settings);
     if (stroke.points_in_ct.size() < 2 || !(stroke.width_mm > 0) || !(brightness > 0)) return;
-    light_points(stroke, settings, counts);
+    RenderCounts here;
+    light_points(stroke, settings, here);
+    counts.points += here.points;
+    counts.lit += here.lit;
+    counts.too_steep += here.too_steep;
+    counts.hidden += here.hidden;
+    counts.outside += here.outside;
+    if (stroke.item >= 0 && static_cast<std::size_t>(stroke.item) < counts.items.size()) {
+        LinePoints& item = counts.items[static_cast<std::size_t>(stroke.item)];
+        item.points += here.points;
+        item.lit += here.lit;
+        item.too_steep += here.too_steep;
+        item.hidden += here.hidden;
+        item.outside += here.outside;
+    }
     add_ribbon(stroke, is_partly_lit_ring(stroke, settings, counts));
     raster.flush(dimmed(stroke.colour, brightness), picture);
 }
@@ -247,6 +261,7 @@ RenderCounts DrawingRenderer::render_into(RgbImage& picture, const PlanDrawing& 
     parts.light_in_ct = parts.projector_from_ct.centre_in_rig();
     parts.depth.draw(parts.projector_from_ct);
     RenderCounts counts;
+    counts.items.resize(drawing.items.size());
     const std::vector<DarkDisc> discs = dark_discs(parts.projector, rig_from_patient, settings);
     for (const Stroke& stroke : drawing.strokes)
         if (settings.only_item < 0 || stroke.item == settings.only_item)

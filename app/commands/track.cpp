@@ -100,9 +100,14 @@ void judge_reference(const PatientTracker& tracker, const StereoFrame& frame, co
         "{} of {} discs in the left and {} in the right reference picture meet in space", markers, left, right);
     if (std::min(left, right) >= kSurelyPasted) {
         constexpr const char* kRemedy =
-            "Give the rig.json that these cameras were calibrated with; if a camera was moved since, calibrate again.";
-        if (markers < kFew) throw CheckFailedError("only " + met + ": the rig is not that of these pictures", kRemedy);
-        return warn(fmt::format("Only {}: the rig may not be that of these pictures. {}", met, kRemedy));
+            "See that at least five of the markers are seen by both cameras, and give the rig.json that these cameras "
+            "were calibrated "
+            "with; if a camera was moved since, calibrate again.";
+        if (markers < kFew)
+            throw CheckFailedError(
+                "only " + met + ": each camera sees other discs, or the rig is not that of these pictures", kRemedy);
+        return warn(fmt::format("Only {}: each camera sees other discs, or the rig is not that of these pictures. {}",
+                                met, kRemedy));
     }
     throw CheckFailedError(fmt::format("only {} markers were found by both cameras in the reference picture", markers),
                            "Paste at least five markers where both cameras see them.");

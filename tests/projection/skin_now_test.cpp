@@ -193,5 +193,41 @@ TEST(SkinNow, ACircleThatCanBeLitInPartOnlyIsDrawnBrokenAndSaid) {
     }
 }
 
+// A line that ends where the light does looks like one that is planned to end there. The skin normal is 75 degrees from
+// the light at a longitude of 75 degrees less what the light's rays run apart.
+TEST(SkinNow, ALineThatGoesOnWhereTheLightEndsIsSaidWithItsShare) {
+    const CameraModel projector =
+        test::projector_looking_at(Vector3d::Zero(), Vector3d::UnitX(), 560, Vector3d::UnitZ());
+    const DrawingRenderer renderer(ball(), projector);
+    Plan plan;
+    constexpr double kTo = 2.0;
+    OsteotomyLine round{"Around", {}, false, {}}, front{"Front", {}, false, {}}, back{"Back", {}, false, {}};
+    for (int i = 0; i <= 40; ++i) {
+        round.points_in_ct.push_back(on_ball(kTo * i / 40, 0));
+        front.points_in_ct.push_back(on_ball(0.5 * i / 40, 0.3));
+        back.points_in_ct.push_back(on_ball(3 + 0.2 * i / 40, 0.3));
+    }
+    plan.osteotomy_lines = {round, front, back};
+    PlanDrawing drawing = draw_plan(plan, ball(), without_labels());
+    std::erase_if(drawing.strokes, [](const Stroke& s) { return s.kind != StrokeKind::osteotomy_line; });
+    RgbImage picture;
+    const RenderCounts counts = renderer.render_into(picture, drawing, RigidTransform::Identity());
+    ASSERT_EQ(counts.items.size(), 3u);
+    const double slope = 1.31, end = slope - std::asin(std::sin(slope) * kRadius_mm / 560.);
+    const LinePoints& light = counts.items[0];
+    EXPECT_NEAR(static_cast<double>(light.lit) / static_cast<double>(light.points), end / kTo, 0.03);
+    EXPECT_EQ(light.lit + light.too_steep + light.hidden + light.outside, light.points);
+    EXPECT_EQ(counts.items[1].lit, counts.items[1].points);
+    EXPECT_EQ(counts.items[2].lit, 0u);
+    const auto said = sentences_of_unlit(counts, drawing);
+    ASSERT_EQ(said.size(), 2u) << "of the line in front there is nothing to say";
+    EXPECT_EQ(said[0].rfind(fmt::format("Around: {:.0f} % of it has no light (",
+                                        100 - 100 * static_cast<double>(light.lit) / static_cast<double>(light.points)),
+                            0),
+              0u)
+        << said[0];
+    EXPECT_EQ(said[1].rfind("Back: no light reaches it from here (", 0), 0u) << said[1];
+}
+
 }  // namespace
 }  // namespace planlight

@@ -126,8 +126,10 @@ std::string remedy_of(const SequenceProblem& problem) {
             return "See that no picture is mirrored and that the bits are not named as their inverses (white where a "
                    "bit is 1).";
         case Cause::fringes:
-            return "See that period, number and order of the shifts are those of capture.json; else check the delay "
-                   "between projector and cameras.";
+            return "See that nobody stepped before the cameras and no lamp was switched while the patterns ran, and "
+                   "that "
+                   "period, number and order of the shifts are those of capture.json; else check the delay between "
+                   "projector and cameras.";
     }
     return {};
 }

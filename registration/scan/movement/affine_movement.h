@@ -42,9 +42,10 @@ struct Laid {
     /// By the scatter of what is left over between patches of the picture, so that what goes together in a patch (a
     /// stripe that is left, a glint, clipped light) is not taken for many measurements.
     Eigen::Matrix<double, kAffine, kAffine> covariance = Eigen::Matrix<double, kAffine, kAffine>::Zero();
-    /// How much brighter or darker all light was than at the first moment, as a share of the projector's; or one of the
-    /// moment's frames than their mean, where that is more.
+    /// How much brighter all light was than at the first moment, as a share of the projector's.
     double light_change = 0;
+    /// The same of that one of the moment's frames which differs most from their mean, without a sign.
+    double uneven_light = 0;
     bool determined = false;
 };
 

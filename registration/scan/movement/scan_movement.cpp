@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "planning_io/types/statistics.h"
 #include "registration/scan/check/camera_gamma.h"
@@ -69,6 +70,25 @@ void find_greatest(const std::vector<NamedMoment>& moments, const std::vector<La
     movement.sigma_mm = median(sigmas_mm);
 }
 
+/// How much the light changed, as a share of the projector's. The sum of fringes is as bright as the projector's grey
+/// values make it (0.36 of white at a gamma of 2.2, and not a half): it is compared with that of other fringes only.
+double change_of_light(const std::vector<Moment>& moments, const std::vector<Laid>& laid) {
+    double change = 0;
+    for (const bool fringes : {false, true}) {
+        double least = std::numeric_limits<double>::infinity(), most = -least;
+        for (std::size_t i = 0; i < moments.size(); ++i) {
+            if (!laid[i].determined) continue;
+            if ((moments[i].frames.size() > 2) != fringes) continue;
+            if (!fringes)
+                change = std::max(change, laid[i].uneven_light);  // of many frames each is known to a tenth only
+            least = std::min(least, laid[i].light_change);
+            most = std::max(most, laid[i].light_change);
+        }
+        change = std::max(change, most - least);  // minus infinity where there are none
+    }
+    return change;
+}
+
 ScanMovement seen_by(const std::vector<GrayImage>& frames, const std::vector<UniformLightFrame>& even,
                      const std::vector<NamedMoment>& named, double mm_per_px) {
     ScanMovement movement;
@@ -83,8 +103,7 @@ ScanMovement seen_by(const std::vector<GrayImage>& frames, const std::vector<Uni
                       [&](std::size_t i) { laid[i] = surface.lay(surface.steadied(moments[i])); });
     movement.moments =
         static_cast<int>(std::count_if(laid.begin(), laid.end(), [](const Laid& l) { return l.determined; }));
-    for (const Laid& l : laid)
-        if (l.determined) movement.light_change = std::max(movement.light_change, l.light_change);
+    movement.light_change = change_of_light(moments, laid);
     movement.camera_gamma = gamma;
     find_greatest(named, laid, surface, mm_per_px, movement);
     return movement;

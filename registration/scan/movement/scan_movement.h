@@ -17,8 +17,8 @@ struct ScanMovement {
     std::string from, to;  ///< names of the pictures at those moments
     int moments = 0;       ///< looked at
     int markers = 0;
-    double light_change =
-        0;  ///< largest from the first moment or between two pictures of one, as a share; by pictures only
+    double light_change = 0;  ///< largest between two moments of one kind (fringes; others) or two pictures of one, as
+                              ///< a share; by pictures only
     double camera_gamma = 1;  ///< what was taken out of the pictures; by pictures only
 
     /// The way that is compared with a limit, mm: pictures show about half of it (one to three quarters), markers all.

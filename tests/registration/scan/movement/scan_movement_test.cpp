@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <random>
 
 #include "registration/scan/check/camera_gamma.h"
@@ -169,6 +170,50 @@ ScanCapture flickering(const std::function<Eigen::Vector2d(double)>& at, double 
             }
     }
     return capture;
+}
+
+/// Fringes of a projector that gives light to the power `gamma`.
+ScanCapture fringes_of(double gamma, double lamp_in_the_middle = 0) {
+    ScanCapture capture;
+    capture.stripes.width = kWidth;
+    capture.stripes.height = kHeight;
+    capture.stripes.rows = false;
+    capture.stripes.order_periods_px = {17, 19};
+    capture.partial = stripe_sequence(capture.stripes);
+    std::mt19937 random(13);
+    std::normal_distribution<double> noise(0, 1.5);
+    for (std::size_t k = 0; k < capture.partial.size(); ++k) {
+        const StripePattern& pattern = capture.partial[k];
+        const double steps = pattern.frequency == 0 ? capture.stripes.phase_steps : capture.stripes.order_steps,
+                     period = pattern.frequency == 0   ? capture.stripes.phase_period_px
+                              : pattern.frequency == 1 ? 17
+                                                       : 19,
+                     lamp = pattern.frequency == 1 ? lamp_in_the_middle : 0;
+        GrayImage frame(kWidth, kHeight);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                double grey = pattern.kind == StripePattern::Kind::white ? 1 : 0;
+                if (pattern.kind == StripePattern::Kind::phase)
+                    grey = 0.5 + 0.5 * std::cos(2 * std::numbers::pi * (x / period - pattern.index / steps));
+                const bool head = std::hypot(x - kWidth / 2.0, y - kHeight / 2.0) < 100;
+                const double light = head ? skin(x, y) * (std::pow(grey, gamma) + 0.12 + lamp) : 3;
+                frame.at(x, y) = static_cast<std::uint8_t>(std::clamp(std::lround(light + noise(random)), 0L, 255L));
+            }
+        capture.left.push_back(std::move(frame));
+    }
+    return capture;
+}
+
+// Fringes of a projector with gamma 2.2 are 0.36 of white in the mean, and not a half: nothing has changed.
+TEST(ScanMovement, AProjectorsGammaIsNoChangeOfTheLight) {
+    for (const double gamma : {1.0, 2.2, 3.0}) {
+        const ScanMovement movement = seen(fringes_of(gamma));
+        EXPECT_EQ(movement.by, ScanMovement::By::pictures) << gamma;
+        EXPECT_GE(movement.moments, 4) << gamma;
+        EXPECT_LT(movement.moved_mm, 0.03) << gamma;
+        EXPECT_LT(movement.light_change, 0.02) << gamma;
+    }
+    EXPECT_GT(seen(fringes_of(2.2, 0.2)).light_change, 0.1) << "a lamp that went on meanwhile still is one";
 }
 
 TEST(ScanMovement, LampsThatFlickerFromPictureToPictureAreNoMovement) {
