@@ -36,7 +36,7 @@ struct Row {
     double ml = NAN, off_percent = NAN, plain_off_percent = NAN, seconds = 0;
     SkinJudgement judged;
     SkinMask mask;
-    std::array<double, 3> jumps{};  ///< `largest_slice_jumps`
+    std::array<double, 3> jumps{}, exchanges{};  ///< `largest_slice_jumps`, `best_slice_exchanges`
 };
 
 /// Threshold, largest piece, fill.
@@ -90,6 +90,7 @@ Row measure(const fs::path& path, const fs::path& pictures) {
         row.judged = judge_skin(volume, row.mask, skin);
         row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
         row.jumps = largest_slice_jumps(volume);
+        row.exchanges = best_slice_exchanges(volume);
         row.ml = row.mask.volume_ml;
         const auto points = ray_skin(volume);
         const OffSkin off = off_skin(points, skin);
@@ -188,7 +189,7 @@ int main(int argc, char** argv) {
     }
     fmt::print(
         "head\tverdict\texpected\tml\tthreshold\tball mm\tlayered\tnose mm\tblur mm\tunsure\tsigma "
-        "mm\techo\tjumps\toff "
+        "mm\techo\tjumps\texchange\toff "
         "> 2 mm %\tplain off %\ts\twhy\n");
     for (const auto& head : heads) {
         const std::string name = head.filename().string();
@@ -198,11 +199,12 @@ int main(int argc, char** argv) {
         wrong += !right;
         fmt::print(
             "{}\t{}{}\t{}\t{:.0f}\t{:.4g}\t{:.0f}\t{:.2f}\t{:.0f}\t{:.1f}\t{:.3f}\t{:.2f}\t{:.1f}\t{:.2f}\t{:.2f}\t"
-            "{:.1f}\t{}\n",
+            "{:.2f}\t{:.1f}\t{}\n",
             name, row.verdict, right ? "" : " WRONG", known == expected.end() ? "-" : known->second, row.ml,
             row.mask.threshold_said, row.judged.ball_radius_mm, row.judged.layered_share, row.judged.nose_mm,
             row.judged.edge_blur_mm, row.mask.unsure_share, row.judged.noise_sigma_mm, row.judged.echo,
-            fmt::join(row.jumps, " "), row.off_percent, row.plain_off_percent, row.seconds, row.why);
+            fmt::join(row.jumps, " "), *std::max_element(row.exchanges.begin(), row.exchanges.end()), row.off_percent,
+            row.plain_off_percent, row.seconds, row.why);
         std::fflush(stdout);
     }
     fmt::print("{} heads, {} not as expected\n", heads.size(), wrong);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <string>
 
 // Volumes as scanners make them: a ball of tissue, with noise in every voxel.
 namespace planlight {
@@ -54,6 +55,36 @@ TEST(SliceFaults, SlicesThatAreThereTwiceAreSaid) {
     EXPECT_NE(volume.notes[0].find("6 of its 70 slices along axis 3 are there twice"), std::string::npos)
         << volume.notes[0];
     EXPECT_NE(volume.notes[0].find("from slice 27 on"), std::string::npos) << volume.notes[0];
+}
+
+/// The note that two slices are exchanged, or nothing.
+std::string exchange_said(Volume volume) {
+    note_slice_faults(volume);
+    for (const std::string& note : volume.notes)
+        if (note.find("exchanged") != std::string::npos) return note;
+    return {};
+}
+
+TEST(SliceFaults, TwoSlicesThatWereExchangedAreSaidWithTheirPlace) {
+    for (const int apart : {1, 2, 5, 16}) {
+        const std::string said = exchange_said(stacked(kSize, [apart](int k) {
+            return k == 14 ? 14 + apart : k == 14 + apart ? 14 : k;
+        }));
+        EXPECT_NE(said.find("its slices 15 and " + std::to_string(15 + apart) + " along axis 3"), std::string::npos)
+            << apart << " apart: " << said;
+    }
+}
+
+TEST(SliceFaults, EverySecondSliceDarkerIsNoExchange) {  // as a scanner takes them that excites them by turns
+    Volume volume = stacked(kSize, [](int k) { return k; });
+    const std::size_t slab = volume.index(0, 0, 1);
+    for (std::size_t v = 0; v < volume.values.size(); ++v)
+        if (v / slab % 2 == 1) volume.values[v] = -1000 + 0.9F * (volume.values[v] + 1000);
+    EXPECT_EQ(exchange_said(volume), "");
+}
+
+TEST(SliceFaults, NoiseAloneIsNoExchange) {
+    EXPECT_EQ(exchange_said(stacked(kSize, [](int) { return 31; })), "");
 }
 
 TEST(SliceFaults, AComputedVolumeMayHaveAnyNumberOfEqualSlices) {
