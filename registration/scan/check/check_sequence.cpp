@@ -127,9 +127,8 @@ std::string remedy_of(const SequenceProblem& problem) {
                    "bit is 1).";
         case Cause::fringes:
             return "See that nobody stepped before the cameras and no lamp was switched while the patterns ran, and "
-                   "that "
-                   "period, number and order of the shifts are those of capture.json; else check the delay between "
-                   "projector and cameras.";
+                   "that period, number and order of the shifts are those of capture.json; else check the delay "
+                   "between projector and cameras.";
     }
     return {};
 }

@@ -167,9 +167,10 @@ Moment Surface::steadied(Moment moment) const {
     constexpr double kUsual = 0.1;  // lamps change by this much, one standard deviation
     const auto frames = static_cast<Eigen::Index>(moment.frames.size()), n = across_.first.size();
     const float scale = 2 / static_cast<float>(frames);
-    // By how much each frame but the last counts more, which the last counts less; then how much brighter they are
-    // together (fringes of a projector that is not linear are not half as bright as white).
-    Eigen::MatrixXd rows(n, frames + kAffine);
+    // Fringes of a projector that is not linear are not half as bright as white; a bit and its inverse are white.
+    const Eigen::Index brightness = frames > 2 ? 1 : 0;
+    // By how much each frame but the last counts more, which the last counts less; then how much brighter they are.
+    Eigen::MatrixXd rows(n, frames - 1 + brightness + kAffine);
     Eigen::VectorXd left = across_.first;
     for (Eigen::Index i = 0; i < n; ++i) {
         const AcrossPixels::Pair& at = across_.pairs[static_cast<std::size_t>(i)];
@@ -184,13 +185,13 @@ Moment Surface::steadied(Moment moment) const {
             left[i] -= rows(i, k);
             rows(i, k) -= last;
         }
-        rows(i, frames - 1) = across_.first[i] - left[i];
+        if (brightness > 0) rows(i, frames - 1) = across_.first[i] - left[i];
     }
     rows.rightCols<kAffine>() = across_.slopes;
     Eigen::VectorXd found = Eigen::VectorXd::Zero(rows.cols()), prior = found;
     prior.head(frames - 1).setConstant(1 / (kUsual * kUsual));  // of a movement there is none
-    prior[frames - 1] = 1;
-    for (int round = 0; round < 3; ++round) {  // edges that have moved, glints: less and less weight
+    if (brightness > 0) prior[frames - 1] = 1;                  // it may be anything
+    for (int round = 0; round < 3; ++round) {                   // edges that have moved, glints: less and less weight
         const Eigen::VectorXd now = left - rows * found;
         std::vector<double> sizes(now.data(), now.data() + now.size());
         for (double& size : sizes) size = std::abs(size);

@@ -77,10 +77,9 @@ double change_of_light(const std::vector<Moment>& moments, const std::vector<Lai
     for (const bool fringes : {false, true}) {
         double least = std::numeric_limits<double>::infinity(), most = -least;
         for (std::size_t i = 0; i < moments.size(); ++i) {
-            if (!laid[i].determined) continue;
-            if ((moments[i].frames.size() > 2) != fringes) continue;
-            if (!fringes)
-                change = std::max(change, laid[i].uneven_light);  // of many frames each is known to a tenth only
+            if (!laid[i].determined || (moments[i].frames.size() > 2) != fringes) continue;
+            // (Of many fringes each by itself is known too badly.)
+            if (!fringes) change = std::max(change, laid[i].uneven_light);
             least = std::min(least, laid[i].light_change);
             most = std::max(most, laid[i].light_change);
         }

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <random>
 
 #include "registration/scan/check/camera_gamma.h"
@@ -184,20 +183,15 @@ ScanCapture fringes_of(double gamma, double lamp_in_the_middle = 0) {
     std::normal_distribution<double> noise(0, 1.5);
     for (std::size_t k = 0; k < capture.partial.size(); ++k) {
         const StripePattern& pattern = capture.partial[k];
-        const double steps = pattern.frequency == 0 ? capture.stripes.phase_steps : capture.stripes.order_steps,
-                     period = pattern.frequency == 0   ? capture.stripes.phase_period_px
-                              : pattern.frequency == 1 ? 17
-                                                       : 19,
-                     lamp = pattern.frequency == 1 ? lamp_in_the_middle : 0;
+        const RgbImage light = draw_stripes(capture.stripes, pattern);
+        const double lamp = pattern.frequency == 1 ? lamp_in_the_middle : 0;
         GrayImage frame(kWidth, kHeight);
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x) {
-                double grey = pattern.kind == StripePattern::Kind::white ? 1 : 0;
-                if (pattern.kind == StripePattern::Kind::phase)
-                    grey = 0.5 + 0.5 * std::cos(2 * std::numbers::pi * (x / period - pattern.index / steps));
+                const double grey = light.at(x, y)[1] / 255.;
                 const bool head = std::hypot(x - kWidth / 2.0, y - kHeight / 2.0) < 100;
-                const double light = head ? skin(x, y) * (std::pow(grey, gamma) + 0.12 + lamp) : 3;
-                frame.at(x, y) = static_cast<std::uint8_t>(std::clamp(std::lround(light + noise(random)), 0L, 255L));
+                const double seen = head ? skin(x, y) * (std::pow(grey, gamma) + 0.12 + lamp) : 3;
+                frame.at(x, y) = static_cast<std::uint8_t>(std::clamp(std::lround(seen + noise(random)), 0L, 255L));
             }
         capture.left.push_back(std::move(frame));
     }
