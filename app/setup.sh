@@ -29,7 +29,7 @@ planlight_build() {
     [ -f "$PLANLIGHT_BUILD/build.ninja" ] ||
         cmake -S "$root" -B "$PLANLIGHT_BUILD" -G Ninja -DCMAKE_BUILD_TYPE=Release >&2 || return 1
     ninja -C "$PLANLIGHT_BUILD" "$@" >&2 && return 0
-    # Two files of one unit (unity.cmake) that do not bear each other must not stop a check of everything else.
+    # Two files of one unit (app/unity.cmake) that do not bear each other must not stop a check of everything else.
     [ "${CI:-}" = true ] || return 1
     echo "Once more, each file by itself (PLANLIGHT_UNITY=OFF)." >&2
     cmake -S "$root" -B "$PLANLIGHT_BUILD" -DPLANLIGHT_UNITY=OFF >&2 || return 1

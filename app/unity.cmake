@@ -1,6 +1,6 @@
-# Compiles several files of a target as one: most of the compiler's time is headers and what they instantiate (a half to two thirds less of it
-# for eight files). Files of one unit never meet each other's names: what one keeps to itself (in an unnamed namespace, static, a macro) is mentioned by
-# no other, so that each means what it means by itself. Files of macros and C names (X11, OpenGL, cameras, DCMTK, CGAL) are compiled alone.
+# Compiles up to eight files of a target as one: most of the compiler's time is headers and what they instantiate. Files of one unit never meet each
+# other's names: what one keeps to itself (in an unnamed namespace, static, a macro) is mentioned by no other, so that each means what it means by
+# itself. Files of macros and C names (X11, OpenGL, cameras, DCMTK, CGAL) are compiled alone.
 #
 # Units are made when CMake runs. If two files clash after a change, run cmake again; -DPLANLIGHT_UNITY=OFF compiles each by itself, and with
 # -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows whether each includes what it needs.
@@ -84,10 +84,17 @@ macro(planlight_disjoint result first second)
   endif()
 endmacro()
 
-# Groups the files of a target; those of `shared`, which other targets of the folder compile as well, stay by themselves.
-function(planlight_unity target shared)
+# Groups the files of a target. Those that other targets of the folder compile as well stay by themselves: a file has one group in a folder.
+function(planlight_unity target)
   get_target_property(sources ${target} SOURCES)
   get_target_property(folder ${target} SOURCE_DIR)
+  get_property(beside DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
+  list(REMOVE_ITEM beside ${target})
+  set(shared)
+  foreach(other ${beside})
+    get_target_property(theirs ${other} SOURCES)
+    list(APPEND shared ${theirs})
+  endforeach()
   set(groups 0)
   foreach(source ${sources})
     if(NOT source MATCHES "\\.cpp$" OR source IN_LIST shared)
