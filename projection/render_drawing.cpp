@@ -44,9 +44,9 @@ struct DrawingRenderer::Parts {
     Parts(const SkinSurface& s, const CameraModel& p)
         : skin(s), projector(p), depth(s.mesh()), raster(p.width, p.height) {}
 
-    void light_points(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts);
+    void light_points(const Stroke& stroke, const RenderSettings& settings, PointCounts& counts);
     LitPoint light_point(const Vector3d& p_in_ct, const Vector3d& normal_in_ct, double steepest_cosine,
-                         RenderCounts& counts) const;
+                         PointCounts& counts) const;
     void add_ribbon(const Stroke& stroke, bool broken);
     void draw_stroke(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts, RgbImage& picture);
     bool can_be_lit_whole(const Label& label, const RenderSettings& settings, const std::vector<DarkDisc>& discs);
@@ -71,7 +71,7 @@ struct DrawingRenderer::Parts {
 };
 
 LitPoint DrawingRenderer::Parts::light_point(const Vector3d& p, const Vector3d& normal, double steepest_cosine,
-                                             RenderCounts& counts) const {
+                                             PointCounts& counts) const {
     LitPoint point;
     ++counts.points;
     const Vector3d to_light = light_in_ct - p;
@@ -102,7 +102,7 @@ LitPoint DrawingRenderer::Parts::light_point(const Vector3d& p, const Vector3d& 
     return point;
 }
 
-void DrawingRenderer::Parts::light_points(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts) {
+void DrawingRenderer::Parts::light_points(const Stroke& stroke, const RenderSettings& settings, PointCounts& counts) {
     points.clear();
     const double steepest_cosine = std::cos(std::clamp(settings.steepest, 0.0, 1.55));
     for (std::size_t i = 0; i < stroke.points_in_ct.size(); ++i)
@@ -157,21 +157,11 @@ void DrawingRenderer::Parts::draw_stroke(const Stroke& stroke, const RenderSetti
         throw InputError("", "a stroke of the drawing has not one normal per point", "Draw the plan again.");
     const double brightness = share_of(stroke.item, settings);
     if (stroke.points_in_ct.size() < 2 || !(stroke.width_mm > 0) || !(brightness > 0)) return;
-    RenderCounts here;
+    PointCounts here;
     light_points(stroke, settings, here);
-    counts.points += here.points;
-    counts.lit += here.lit;
-    counts.too_steep += here.too_steep;
-    counts.hidden += here.hidden;
-    counts.outside += here.outside;
-    if (stroke.item >= 0 && static_cast<std::size_t>(stroke.item) < counts.items.size()) {
-        LinePoints& item = counts.items[static_cast<std::size_t>(stroke.item)];
-        item.points += here.points;
-        item.lit += here.lit;
-        item.too_steep += here.too_steep;
-        item.hidden += here.hidden;
-        item.outside += here.outside;
-    }
+    counts += here;
+    if (stroke.item >= 0 && static_cast<std::size_t>(stroke.item) < counts.items.size())
+        counts.items[static_cast<std::size_t>(stroke.item)] += here;
     add_ribbon(stroke, is_partly_lit_ring(stroke, settings, counts));
     raster.flush(dimmed(stroke.colour, brightness), picture);
 }
@@ -180,7 +170,7 @@ void DrawingRenderer::Parts::draw_stroke(const Stroke& stroke, const RenderSetti
 bool DrawingRenderer::Parts::can_be_lit_whole(const Label& label, const RenderSettings& settings,
                                               const std::vector<DarkDisc>& discs) {
     const double steepest_cosine = std::cos(std::clamp(std::min(settings.steepest, settings.steepest_text), 0.0, 1.55));
-    RenderCounts not_of_lines;
+    PointCounts not_of_lines;
     const auto lit = [&](const Vector3d& p, const Vector3d& normal) {
         const LitPoint point = light_point(p, normal, steepest_cosine, not_of_lines);
         return point.lit &&
@@ -223,6 +213,19 @@ bool DrawingRenderer::Parts::is_partly_lit_ring(const Stroke& stroke, const Rend
     if (share >= settings.whole_ring) return false;
     counts.partly_lit.push_back({stroke.item, share});
     return true;
+}
+
+double PointCounts::lit_share() const {
+    return points > 0 ? static_cast<double>(lit) / static_cast<double>(points) : 0;
+}
+
+PointCounts& PointCounts::operator+=(const PointCounts& others) {
+    points += others.points;
+    lit += others.lit;
+    too_steep += others.too_steep;
+    hidden += others.hidden;
+    outside += others.outside;
+    return *this;
 }
 
 DrawingRenderer::DrawingRenderer(const SkinSurface& skin, const CameraModel& projector)

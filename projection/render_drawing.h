@@ -31,24 +31,23 @@ struct PartlyLitRing {
     double lit_share = 0;  ///< of its rim
 };
 
-/// What became of the points of one item's lines, without its label; all of them are lit, or one of these.
-struct LinePoints {
-    std::size_t points = 0;  ///< 0: of this item nothing was to be drawn
-    std::size_t lit = 0;
-    std::size_t too_steep = 0;  ///< the light would graze the skin, or it faces away
-    std::size_t hidden = 0;     ///< other skin stands in the light's way
-    std::size_t outside = 0;    ///< out of the projector's picture
-};
-
-/// What became of the drawing's points in one picture.
-struct RenderCounts {
+/// What became of the points of lines; each is lit, or one of the other three.
+struct PointCounts {
     std::size_t points = 0;
     std::size_t lit = 0;
     std::size_t too_steep = 0;  ///< the light would graze the skin, or it faces away
     std::size_t hidden = 0;     ///< other skin stands in the light's way
     std::size_t outside = 0;    ///< out of the projector's picture
+
+    /// Of all its points; 0 where there are none.
+    double lit_share() const;
+    PointCounts& operator+=(const PointCounts& others);
+};
+
+/// What became of the drawing's points in one picture, without those of labels.
+struct RenderCounts : PointCounts {
+    std::vector<PointCounts> items;  ///< one for each of PlanDrawing::items; of those that are not drawn no points
     std::vector<PartlyLitRing> partly_lit;
-    std::vector<LinePoints> items;                 ///< one for each of PlanDrawing::items
     std::vector<int> labels_lit, labels_left_out;  ///< items; a label is left out when not all of it can be lit
     bool card_lit = false;
 };
@@ -56,9 +55,8 @@ struct RenderCounts {
 /// One sentence for every circle of which only a part can be lit.
 std::vector<std::string> sentences(const std::vector<PartlyLitRing>& rings, const PlanDrawing& drawing);
 
-/// One sentence for every item that lies in part or as a whole where no light falls, with the shares of what prevents
-/// it: a line that ends where the light does looks like one that is planned to end there. Not for those of
-/// `partly_lit`.
+/// One sentence for every item of whose lines a twentieth or more has no light, and for what reason most of it: a line
+/// that ends where the light does looks like one that is planned to end there. Not for those of `partly_lit`.
 std::vector<std::string> sentences_of_unlit(const RenderCounts& counts, const PlanDrawing& drawing);
 
 /// One sentence that names the items whose labels cannot be lit whole; empty when all can.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "projection/render_drawing.h"
 
@@ -27,37 +28,31 @@ std::vector<std::string> sentences(const std::vector<PartlyLitRing>& rings, cons
                 ? fmt::format("{}: only {:.0f} % of its rim can be lit from here; it is drawn broken. Turn the "
                               "patient or the projector.",
                               name, 100 * ring.lit_share)
-                : fmt::format("{}: no light reaches it from here. Turn the patient or the projector.", name));
+                : fmt::format("{}: nothing of its rim can be lit from here. Turn the patient or the projector.", name));
     }
     return said;
 }
 
 std::vector<std::string> sentences_of_unlit(const RenderCounts& counts, const PlanDrawing& drawing) {
-    constexpr double kSaid = 0.03;
+    constexpr double kSaid = 0.05;
     std::vector<std::string> said;
     for (std::size_t i = 0; i < counts.items.size() && i < drawing.items.size(); ++i) {
-        const LinePoints& light = counts.items[i];
+        const PointCounts& light = counts.items[i];
+        const std::string& name = drawing.items[i].name;
         const auto is_this = [&](const PartlyLitRing& ring) { return ring.item == static_cast<int>(i); };
-        if (light.points == 0 || std::any_of(counts.partly_lit.begin(), counts.partly_lit.end(), is_this)) continue;
-        const auto share = [&](std::size_t of) { return static_cast<double>(of) / static_cast<double>(light.points); };
-        const double dark = 1 - share(light.lit);
-        if (dark < kSaid) continue;
-        std::string causes;
-        const auto add = [&](std::size_t of, const char* cause) {
-            if (share(of) >= 0.005)
-                causes += fmt::format("{}{:.0f} % {}", causes.empty() ? "" : ", ", 100 * share(of), cause);
-        };
-        add(light.outside, "out of the projector's picture");
-        add(light.hidden, "behind other skin");
-        add(light.too_steep, "where the light would graze the skin or the skin faces away");
-        said.push_back(
-            light.lit == 0
-                ? fmt::format("{}: no light reaches it from here ({}). Turn the patient or the projector.",
-                              drawing.items[i].name, causes)
-                : fmt::format(
-                      "{}: {:.0f} % of it has no light ({}): it goes on where the light ends, and its label gives the "
-                      "whole length. Turn the patient or the projector.",
-                      drawing.items[i].name, 100 * dark, causes));
+        const double dark = 1 - light.lit_share();
+        if (light.points == 0 || dark < kSaid || std::ranges::any_of(counts.partly_lit, is_this)) continue;
+        if (light.lit == 0) {
+            said.push_back(fmt::format("{}: no light reaches it from here. Turn the patient or the projector.", name));
+            continue;
+        }
+        const char* where = light.outside >= std::max(light.hidden, light.too_steep) ? "out of the projector's picture"
+                            : light.hidden >= light.too_steep                        ? "behind other skin"
+                                                                                     : "where the skin turns away";
+        said.push_back(fmt::format(
+            "{}: about {:.0f} % of it has no light, most of that {}; it goes on where the light ends. Turn the patient "
+            "or the projector.",
+            name, 5 * std::round(20 * dark), where));
     }
     return said;
 }

@@ -136,15 +136,7 @@ int run_project(const ProjectOptions& options) {
     for (const PartlyLitRing& ring : light.partly_lit)
         if (ring.item >= 0) items[static_cast<std::size_t>(ring.item)]["lit_share_of_circle"] = ring.lit_share;
     for (const auto& sentence : sentences(light.partly_lit, drawing.drawing)) warn(sentence);
-    long with_light = 0;
-    for (std::size_t i = 0; i < light.items.size(); ++i) {
-        const LinePoints& of = light.items[i];
-        items[i]["lit_share"] = of.points > 0 ? static_cast<double>(of.lit) / static_cast<double>(of.points) : 0.0;
-        with_light += of.lit > 0 &&
-                      std::none_of(light.partly_lit.begin(), light.partly_lit.end(), [&](const PartlyLitRing& ring) {
-                          return ring.item == static_cast<int>(i) && !(ring.lit_share > 0);
-                      });
-    }
+    for (std::size_t i = 0; i < light.items.size(); ++i) items[i]["lit_share"] = light.items[i].lit_share();
     for (const auto& sentence : sentences_of_unlit(light, drawing.drawing)) warn(sentence);
     if (const auto sentence = sentence_of_labels(light, drawing.drawing); !sentence.empty()) warn(sentence);
     if (options.json)
@@ -155,8 +147,10 @@ int run_project(const ProjectOptions& options) {
                                               {"items", items}})
                   << '\n';
     else
-        fmt::print("{}\n{} of {} items in {} ({} lit pixels).\n", title_of(the_case), with_light, items.size(),
-                   options.out.string(), lit);
+        fmt::print(
+            "{}\n{} of {} items in {} ({} lit pixels).\n", title_of(the_case),
+            std::count_if(light.items.begin(), light.items.end(), [](const PointCounts& of) { return of.lit > 0; }),
+            items.size(), options.out.string(), lit);
     return 0;
 }
 

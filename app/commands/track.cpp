@@ -101,13 +101,10 @@ void judge_reference(const PatientTracker& tracker, const StereoFrame& frame, co
     if (std::min(left, right) >= kSurelyPasted) {
         constexpr const char* kRemedy =
             "See that at least five of the markers are seen by both cameras, and give the rig.json that these cameras "
-            "were calibrated "
-            "with; if a camera was moved since, calibrate again.";
-        if (markers < kFew)
-            throw CheckFailedError(
-                "only " + met + ": each camera sees other discs, or the rig is not that of these pictures", kRemedy);
-        return warn(fmt::format("Only {}: each camera sees other discs, or the rig is not that of these pictures. {}",
-                                met, kRemedy));
+            "were calibrated with; if a camera was moved since, calibrate again.";
+        const std::string cause = met + ": each camera sees other discs, or the rig is not that of these pictures";
+        if (markers < kFew) throw CheckFailedError("only " + cause, kRemedy);
+        return warn(fmt::format("Only {}. {}", cause, kRemedy));
     }
     throw CheckFailedError(fmt::format("only {} markers were found by both cameras in the reference picture", markers),
                            "Paste at least five markers where both cameras see them.");

@@ -39,6 +39,8 @@ Status status_of(const Session& session, const Session::Update& update, const Li
     if (!update.overlay.lit)
         return {StatusKind::dark, "Dark: " + update.overlay.reason + ".", why_dark(session, update.causes)};
     std::vector<std::string> details = sentences(update.overlay.counts.partly_lit, session.lit_drawing());
+    const std::vector<std::string> unlit = sentences_of_unlit(update.overlay.counts, session.lit_drawing());
+    details.insert(details.end(), unlit.begin(), unlit.end());
     details.insert(details.end(), ruling.details.begin(), ruling.details.end());
     if (!update.camera_doubt.empty()) details.push_back(update.camera_doubt + ".");
     if (card_asked && ruling.ask_to_verify && !session.item_of_moment() &&
