@@ -2,7 +2,7 @@
 # other's names: what one keeps to itself (in an unnamed namespace, static, a macro) is mentioned by no other, so that each means what it means by
 # itself. Files of macros and C names (X11, OpenGL, cameras, DCMTK, CGAL) are compiled alone.
 #
-# Units are made when CMake runs. If two files clash after a change, run cmake again; -DPLANLIGHT_UNITY=OFF compiles each by itself, and with
+# Units are made when CMake runs. If two files clash after a change, run cmake again; -DPLANLIGHT_SPLIT=UNIT parts one, -DPLANLIGHT_UNITY=OFF all, and with
 # -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows whether each includes what it needs.
 
 # Names that the file keeps to itself, and all its words, as lists.
@@ -133,7 +133,9 @@ function(planlight_unity target)
     list(APPEND own_${found} ${own})
     list(APPEND words_${found} ${words})
     list(REMOVE_DUPLICATES words_${found})
-    set_source_files_properties(${file} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${target}_${found})
+    if(NOT ${target}_${found} IN_LIST PLANLIGHT_SPLIT)
+      set_source_files_properties(${file} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${target}_${found})
+    endif()
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   # (A unit is no header: a class of one of its files may have a member of its unnamed namespace.)

@@ -41,6 +41,12 @@ protected:
         return step;
     }
 
+    /// With the rig as it was calibrated: good.ply, good.json, good.png.
+    static void chain_of_the_good_rig() {
+        static const CommandRun done = chain("room/rig.json", "good");
+        ASSERT_EQ(done.exit_code, 0) << done.err;
+    }
+
     /// Middle of all light, projector pixels.
     static Eigen::Vector2d middle_of(const fs::path& picture) {
         const GrayImage light = read_gray(picture);
@@ -60,8 +66,7 @@ protected:
 TEST_F(MovedRig, LightOfABumpedProjectorFallsWhereItFellBefore) {
     prepared();
     simulated();
-    const auto good = chain("room/rig.json", "good");
-    ASSERT_EQ(good.exit_code, 0) << good.err;
+    ASSERT_NO_FATAL_FAILURE(chain_of_the_good_rig());
     const Eigen::Vector2d wanted = middle_of(root() / "good.png");
     int number = 0;
     for (const auto& [turn, shift] : {std::pair{Eigen::Vector3d(0.1, 0, 0), Eigen::Vector3d(0, 0, 0)},
@@ -83,7 +88,7 @@ TEST_F(MovedRig, LightOfABumpedProjectorFallsWhereItFellBefore) {
 TEST_F(MovedRig, LightOfABumpedCameraFallsWhereItFellBeforeOrThereIsNone) {
     prepared();
     simulated();
-    ASSERT_EQ(chain("room/rig.json", "good").exit_code, 0);
+    ASSERT_NO_FATAL_FAILURE(chain_of_the_good_rig());
     const Eigen::Vector2d wanted = middle_of(root() / "good.png");
     int number = 0;
     for (const Eigen::Vector3d& turn : {Eigen::Vector3d(0.1, 0, 0), Eigen::Vector3d(0, 0.05, 0),
@@ -107,7 +112,7 @@ TEST_F(MovedRig, PosesAreMeasuredWithTheRigThatTheScanFound) {
     simulated();
     write_bumped(RigDevice::right_camera, {0.2, 0.05, 0}, {0, 0, 0}, "right-rig.json");
     ASSERT_EQ(chain("right-rig.json", "right").exit_code, 0);
-    ASSERT_EQ(chain("room/rig.json", "good").exit_code, 0);
+    ASSERT_NO_FATAL_FAILURE(chain_of_the_good_rig());
     const auto good = run("track room/frames --rig room/rig.json --capture room/capture --out good-poses.json");
     ASSERT_EQ(good.exit_code, 0) << good.err;
     const auto draw = [&](const std::string& rig, const std::string& match, const std::string& poses,
@@ -127,7 +132,7 @@ TEST_F(MovedRig, PosesAreMeasuredWithTheRigThatTheScanFound) {
 TEST_F(MovedRig, FilesOfOthersAreRefusedWithBothNames) {
     prepared();
     simulated();
-    ASSERT_EQ(chain("room/rig.json", "good").exit_code, 0);
+    ASSERT_NO_FATAL_FAILURE(chain_of_the_good_rig());
     ASSERT_EQ(run("simulate " + patient() + " --plan " + plan() + " --preset paper --seed 5 --frames 1 --out room2")
                   .exit_code,
               0);
@@ -176,7 +181,7 @@ TEST_F(MovedRig, FramesOfExchangedCamerasOrOfAnotherRigAreNamed) {
 TEST_F(MovedRig, AnEditedMatchAndLightThatFallsNowhereAreRefused) {
     prepared();
     simulated();
-    ASSERT_EQ(chain("room/rig.json", "good").exit_code, 0);
+    ASSERT_NO_FATAL_FAILURE(chain_of_the_good_rig());
     std::string text = read_text(root() / "good.json");
     text.replace(text.find("\"residual_rms_mm\": 0."), 21, "\"residual_rms_mm\": 1.");
     std::ofstream(root() / "edited.json") << text;
@@ -202,7 +207,7 @@ TEST_F(MovedRig, AnEditedMatchAndLightThatFallsNowhereAreRefused) {
 TEST_F(MovedRig, ACloudWithoutARigIsMatchedAndDrawnOnlyOnAPersonsWord) {
     prepared();
     simulated();
-    ASSERT_EQ(chain("room/rig.json", "good").exit_code, 0);
+    ASSERT_NO_FATAL_FAILURE(chain_of_the_good_rig());
     std::string text = read_text(root() / "good.ply");
     for (std::size_t at; (at = text.find("comment PLANLIGHT-RIG")) != std::string::npos;)
         text.erase(at, text.find('\n', at) + 1 - at);
