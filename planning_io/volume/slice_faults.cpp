@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,6 +55,7 @@ double mean_difference(const std::vector<double>& a, const std::vector<double>& 
 struct SliceRow {
     std::vector<std::string> hashes;
     std::vector<std::vector<double>> blocks;
+    std::vector<bool> plain;    ///< whether a slice shows one value only
     std::vector<double> noise;  ///< share of the voxels that differ from the slice before
     std::vector<double> apart;  ///< mean difference of blocks from the slice before
 };
@@ -64,6 +66,8 @@ SliceRow row_along(const Volume& volume, std::size_t axis) {
     for (int k = 0; k < volume.size[axis]; ++k) {
         ThinSlice slice = slice_of(volume, axis, k);
         row.blocks.push_back(blocks_of(slice));
+        row.plain.push_back(std::adjacent_find(slice.values.begin(), slice.values.end(), std::not_equal_to<>()) ==
+                            slice.values.end());
         ContentHash hash;
         hash.add_values(slice.values.data(), slice.values.size());
         row.hashes.push_back(hash.hex());
@@ -89,13 +93,20 @@ std::pair<int, std::size_t> repeated_in(const SliceRow& row) {
     constexpr std::size_t kMostLag = 64;
     std::pair<int, std::size_t> repeated{0, 0};
     for (std::size_t k = 1; k < row.hashes.size(); ++k) {
-        // Of plain slices, all air say, one is as the other.
-        if (row.noise[k - 1] == 0 && k >= 2 && row.noise[k - 2] == 0) continue;
+        if (row.plain[k]) continue;  // all air, say: one is as the other
         const auto here = row.hashes.begin() + static_cast<std::ptrdiff_t>(k),
                    from = here - static_cast<std::ptrdiff_t>(std::min(k, kMostLag));
         if (std::find(from, here, *here) != here && repeated.first++ == 0) repeated.second = k;
     }
     return repeated;
+}
+
+/// The first slice that shows one value only between others that do not; 0 without one.
+std::size_t empty_in(const SliceRow& row) {
+    const auto first = std::find(row.plain.begin(), row.plain.end(), false);
+    const auto last = std::find(row.plain.rbegin(), row.plain.rend(), false).base();
+    const auto empty = first < last ? std::find(first, last, true) : last;
+    return empty < last ? static_cast<std::size_t>(empty - row.plain.begin()) : 0;
 }
 
 /// Where neighbours differ far more than those around them do: the second of the two, and how many times as much.
@@ -168,6 +179,11 @@ void note_slice_faults(Volume& volume) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const SliceRow row = row_along(volume, axis);
         if (!is_of_a_scanner(row)) continue;
+        if (const std::size_t empty = empty_in(row); empty > 0)
+            volume.notes.push_back(fmt::format(
+                "its slice {} along axis {} shows one value only, as where a slice was lost: the skin there is "
+                "not the patient's; export the series again",
+                empty + 1, axis + 1));
         if (const auto [count, first] = repeated_in(row); count > 0)
             volume.notes.push_back(
                 fmt::format("{} of its {} slices along axis {} are there twice, bit for bit, from slice {} on: behind "

@@ -8,8 +8,9 @@ namespace planlight {
 
 /// Notes in `volume.notes`, for any axis: slices that are there twice, bit for bit; neighbours that differ 2.5 times as
 /// much as those around them, as where slices are missing: behind either the head is in the wrong place; and two slices
-/// that fit 1.3 times better exchanged (up to 16 apart). Asked where neighbours differ by noise nearly everywhere, as
-/// those of a scanner do. At the outer four slices, of exchanges at the outer six, nothing is told.
+/// that fit 1.3 times better exchanged (up to 16 apart); and a slice of one value between others. Asked where
+/// neighbours differ by noise nearly everywhere, as those of a scanner do. At the outer four slices, of exchanges at
+/// the outer six, nothing is told.
 void note_slice_faults(Volume& volume);
 
 /// Along each axis, how many times as much two neighbours differ as those around them, where they do the most; 0 along

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -85,6 +86,20 @@ TEST(SliceFaults, EverySecondSliceDarkerIsNoExchange) {  // as a scanner takes t
 
 TEST(SliceFaults, NoiseAloneIsNoExchange) {
     EXPECT_EQ(exchange_said(stacked(kSize, [](int) { return 31; })), "");
+}
+
+TEST(SliceFaults, ASliceThatWasLostIsSaidAndEmptyOnesAtTheEndsAreNot) {
+    Volume volume = stacked(kSize, [](int k) { return k; });
+    const auto slab = static_cast<std::ptrdiff_t>(volume.index(0, 0, 1));
+    std::fill(volume.values.end() - 2 * slab, volume.values.end(), -1000.F);
+    std::fill(volume.values.begin(), volume.values.begin() + 3 * slab, -1000.F);
+    note_slice_faults(volume);
+    EXPECT_TRUE(volume.notes.empty()) << volume.notes.front();
+    std::fill(volume.values.begin() + 40 * slab, volume.values.begin() + 41 * slab, 0.F);
+    note_slice_faults(volume);
+    ASSERT_FALSE(volume.notes.empty());
+    EXPECT_NE(volume.notes[0].find("its slice 41 along axis 3 shows one value only"), std::string::npos)
+        << volume.notes[0];
 }
 
 TEST(SliceFaults, AComputedVolumeMayHaveAnyNumberOfEqualSlices) {
