@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "planning_io/types/error.h"
+#include "segmentation/beside_head.h"
 #include "segmentation/boneless_ends.h"
 #include "segmentation/head_proportions.h"
 #include "segmentation/series_doubts.h"
@@ -23,7 +24,9 @@ constexpr double kLeastBall_mm = 40, kMostBall_mm = 100;  // newborn 45, adult w
 constexpr double kFewLayers_refused = 0.2, kFewLayers_masked = 0.45, kFewLayers_doubted = 0.5;
 constexpr double kFaintLayers = 0.85;  // of the vault: blurred averages show a faint layer all over, brains do not
 constexpr double kThinnestScalp_mm = 1.5;
-constexpr double kNose_mm = 18;  // of an adult: noses stand out by 28 to 50; smaller heads in proportion
+constexpr double kNose_mm = 18;      // of an adult: noses stand out by 28 to 50; smaller heads in proportion
+constexpr double kBeside_mm = 44;    // radius of a ball beside the head: a newborn's head holds one of 45, an arm of 40
+constexpr double kSureNose_mm = 28;  // of an adult, where it is sought elsewhere than in front
 constexpr double kBlurred_mm = 4.2;
 constexpr double kThick_mm = 3.5;  // thicker slices than that leave more than 1 % of the skin over 2 mm off
 constexpr double kUnsure_doubted = 0.06, kUnsure_refused = 0.3;
@@ -34,8 +37,8 @@ constexpr double kGap_cm2 = 15, kLight_cm2 = 15;
 constexpr double kBonelessEnd_cm2 = 8;  // an ear that the volume cuts off has 4
 constexpr double kOneSided_cm2 = 15, kBumps_cm2 = 10, kShelf_cm2 = 15, kWidth = 1.35, kThickest_mm = 15;
 
-// `measure_mr_draws 1 4 0.8 --noise 0.02 --fat-shift MM`: fat moved by 1 and 2 mm moves the skin by 0.45 of it (rms),
-// and at 2 mm more than 1 % of the skin by over 2 mm.
+// `measure_mr_draws 1 4 0.8 --skin 0 --noise 0.02 --fat-shift MM`: fat up to the surface moved by 1 and 2 mm moves the
+// skin by 0.45 of it (rms), and at 2 mm more than 1 % of the skin by over 2 mm; under skin of 1.5 mm less.
 constexpr double kSkinOfFatShift = 0.45, kFatShift_mm = 1.5;
 
 // Of 500 draws of `measure_mr_draws` and 23 real heads the noisiest that is right has 0.57.
@@ -153,13 +156,46 @@ void judge_layers(const Volume& volume, bool air_is_blank, double faint_share, S
             "Give the series in HU if there is one, and look at the skin in the report.");
 }
 
-void judge_face(SkinJudgement& r) {
+/// How a head whose nose is not in front may lie against its header: the half turn after which a nose is there, in
+/// words; or nothing. A mirror image of a head looks the same as some half turn of it.
+std::string nose_elsewhere(const TriangleMesh& skin, const HeadBall& ball) {
+    const std::pair<Eigen::Vector3d, const char*> turns[] = {
+        {{-1, -1, 1}, "the head looks to the back"},
+        {{1, -1, -1}, "the head is upside down and looks to the back"},
+        {{-1, 1, -1}, "the head is upside down"}};
+    std::string found;
+    double best_mm = kSureNose_mm * std::min(1.0, ball.radius_mm / 72);
+    for (const auto& [signs, words] : turns) {
+        TriangleMesh turned = skin;
+        for (auto& p : turned.vertices_in_ct) p = ball.centre_in_ct + signs.cwiseProduct(p - ball.centre_in_ct);
+        const double nose_mm = nose_length_mm(turned, ball, {ball.centre_in_ct});
+        if (nose_mm > best_mm)
+            best_mm = nose_mm, found = fmt::format("{}, where a nose stands out by {:.0f} mm", words, nose_mm);
+    }
+    return found;
+}
+
+void judge_face(const TriangleMesh& skin, const HeadBall& ball, SkinJudgement& r) {
     if (!(r.nose_mm < nose_due_mm(r))) return;
+    if (const std::string elsewhere = nose_elsewhere(skin, ball); !elsewhere.empty())
+        return add(r.doubts,
+                   "By its header " + elsewhere +
+                       ": the header does not say how the head lies, and left and right may be exchanged as well",
+                   "Convert the series again from DICOM, and compare the sides with what is known of the patient.");
     add(r.doubts,
         fmt::format("The face is not there: nothing stands out before the cheeks by more than {:.0f} mm where a nose "
                     "should (noses have 25 to 50 mm); it was taken away, covered or cut off",
                     r.nose_mm),
         "Give the series as the scanner made it: the scan is matched by the face.");
+}
+
+void judge_beside(SkinJudgement& r) {
+    if (r.beside_mm < kBeside_mm) return;
+    add(r.doubts,
+        fmt::format("Beside the head that was taken lies something as thick as a head (a ball of {:.0f} mm fits in): "
+                    "the volume may show two heads, or the head and a phantom",
+                    r.beside_mm),
+        "Give a series of this patient alone, and look which of them is in the report.");
 }
 
 void judge_edges(const SkinMask& mask, SkinJudgement& r) {
@@ -344,6 +380,7 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     result.boneless_cm2 = layers.boneless_cm2;
     result.light_cm2 = layers.light_cm2;
     result.light_at = where_on_head(layers.light_in_ct, ball);
+    result.beside_mm = ball_beside_head_mm(volume, mask);
     if (!mask.levels.empty()) result.strand_mm = strand_length_mm(volume, mask, skin);
     result.nose_mm = nose_length_mm(skin, ball, things.plane);
     result.one_sided_cm2 = things.one_sided_cm2;
@@ -356,7 +393,8 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     judge_size(result);
     judge_proportions(skin, ball, things.plane, result);
     judge_layers(volume, layers.faint_share < kFaintLayers && layers.air_is_blank, layers.faint_share, result);
-    judge_face(result);
+    judge_face(skin, ball, result);
+    judge_beside(result);
     judge_edges(mask, result);
     judge_things(result);
     judge_greys(greys, result);

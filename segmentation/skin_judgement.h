@@ -37,6 +37,7 @@ struct SkinJudgement {
     double width = NAN;
     double shelf_cm2 = NAN;
     double strand_mm = 0;  ///< of an MR: how long a thin thing is that hangs on the head
+    double beside_mm = 0;  ///< `ball_beside_head_mm`
     bool unsure = false;   ///< much of the outline moves with the threshold: other thresholds are to be seen
     double sigma_mm = 0;   ///< `skin_edge_sigma_mm`, or more where the edge is blurred, with what fat may shift it
     double breadth_of_length = 0, height_of_width = 0;  ///< `head_proportions`; 0: not measured

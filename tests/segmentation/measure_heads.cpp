@@ -189,7 +189,7 @@ int main(int argc, char** argv) {
     }
     fmt::print(
         "head\tverdict\texpected\tml\tthreshold\tball mm\tlayered\tnose mm\tblur mm\tunsure\tsigma "
-        "mm\techo\tjumps\texchange\toff "
+        "mm\techo\tbeside mm\tjumps\texchange\toff "
         "> 2 mm %\tplain off %\ts\twhy\n");
     for (const auto& head : heads) {
         const std::string name = head.filename().string();
@@ -198,13 +198,14 @@ int main(int argc, char** argv) {
         const bool right = known == expected.end() || is_right(row.verdict, known->second, false);
         wrong += !right;
         fmt::print(
-            "{}\t{}{}\t{}\t{:.0f}\t{:.4g}\t{:.0f}\t{:.2f}\t{:.0f}\t{:.1f}\t{:.3f}\t{:.2f}\t{:.1f}\t{:.2f}\t{:.2f}\t"
-            "{:.2f}\t{:.1f}\t{}\n",
+            "{}\t{}{}\t{}\t{:.0f}\t{:.4g}\t{:.0f}\t{:.2f}\t{:.0f}\t{:.1f}\t{:.3f}\t{:.2f}\t{:.2f}\t{:.0f}\t{:.1f}\t"
+            "{:.2f}\t{:.2f}\t{:.2f}\t{:.1f}\t{}\n",
             name, row.verdict, right ? "" : " WRONG", known == expected.end() ? "-" : known->second, row.ml,
             row.mask.threshold_said, row.judged.ball_radius_mm, row.judged.layered_share, row.judged.nose_mm,
             row.judged.edge_blur_mm, row.mask.unsure_share, row.judged.noise_sigma_mm, row.judged.echo,
-            fmt::join(row.jumps, " "), *std::max_element(row.exchanges.begin(), row.exchanges.end()), row.off_percent,
-            row.plain_off_percent, row.seconds, row.why);
+            row.judged.beside_mm, fmt::join(row.jumps, " "),
+            *std::max_element(row.exchanges.begin(), row.exchanges.end()), row.off_percent, row.plain_off_percent,
+            row.seconds, row.why);
         std::fflush(stdout);
     }
     fmt::print("{} heads, {} not as expected\n", heads.size(), wrong);

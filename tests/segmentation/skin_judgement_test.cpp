@@ -70,6 +70,33 @@ TEST(JudgeSkin, AHeadWithScalpBoneBrainAndNoseHasNoDoubts) {
     EXPECT_NEAR(head.skin.ball_radius_mm, 75, 5);
 }
 
+/// What a converter does that loses the direction of an axis or two.
+TEST(JudgeSkin, AHeadThatLiesOtherwiseThanItsHeaderSaysIsTold) {
+    const auto turned_by = [](const Vector3d& signs) {
+        return judged(mr_of([&](const Vector3d& p) { return layered(depth_in_head(signs.cwiseProduct(p))); })).skin;
+    };
+    EXPECT_FALSE(doubts(turned_by({1, 1, 1}), "By its header"));
+    EXPECT_TRUE(doubts(turned_by({1, 1, -1}), "the head is upside down, where"));
+    EXPECT_TRUE(doubts(turned_by({1, -1, -1}), "the head is upside down and looks to the back"));
+    EXPECT_TRUE(doubts(turned_by({1, -1, 1}), "the head looks to the back"));
+    const Judged faceless = judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p, false)); }));
+    EXPECT_FALSE(doubts(faceless.skin, "By its header"));
+}
+
+TEST(JudgeSkin, ASecondHeadInTheVolumeIsTold) {
+    const auto beside = [](double scale) {  // a head of this size beside one of usual size
+        return judged(mr_of(
+            [scale](const Vector3d& p) {
+                const Vector3d other = (p + Vector3d(100, 0, 0)) / scale;
+                return layered(std::max(depth_in_head(p - Vector3d(100, 0, 0)), scale * depth_in_head(other)));
+            },
+            {205, 125, 115}));
+    };
+    const Judged two = beside(0.9);
+    EXPECT_TRUE(doubts(two.skin, "Beside the head")) << two.skin.beside_mm;
+    EXPECT_FALSE(doubts(beside(0.4).skin, "Beside the head")) << "a bottle of 30 mm";
+}
+
 TEST(JudgeSkin, SaysHowFarTheHeaderSaysThatFatLiesAside) {
     Volume head = mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); });
     const double sigma_mm = judged(head).skin.sigma_mm;
