@@ -1,7 +1,7 @@
 // Heads made from the CT of the example patient (or another in HU) with the contrast and the faults of an MR: right,
 // warned, refused, wrong. measure_mr_draws FIRST_SEED COUNT [LEAST_VOXEL_MM [PICTURES]] [--ct VOLUME] [--fat-shift MM]
-// [--noise SHARE]. Right: at most 1 % of the true skin lies further than 2 mm from ours; wrong: more, and taken without
-// a warning.
+// [--noise SHARE] [--skin MM]. Right: at most 1 % of the true skin lies further than 2 mm from ours; wrong: more, and
+// taken without a warning.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -26,6 +26,8 @@ int main(int argc, char** argv) {
             look.fat_shift_mm = std::stod(words[w + 1]);
         else if (words[w] == "--noise")
             look.noise = std::stod(words[w + 1]);
+        else if (words[w] == "--skin")
+            look.skin_mm = std::stod(words[w + 1]);
         else {
             ++w;
             continue;
@@ -35,7 +37,7 @@ int main(int argc, char** argv) {
     if (words.size() < 2 || of.empty()) {
         fmt::print(stderr,
                    "measure_mr_draws FIRST_SEED COUNT [LEAST_VOXEL_MM [PICTURES]] [--ct VOLUME] [--fat-shift MM] "
-                   "[--noise SHARE]; without --ct it needs Debian's invesalius-examples\n");
+                   "[--noise SHARE] [--skin MM]; without --ct it needs Debian's invesalius-examples\n");
         return 2;
     }
     const auto first = static_cast<std::uint32_t>(std::stoi(words[0])),

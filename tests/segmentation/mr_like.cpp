@@ -10,6 +10,7 @@
 #include <numbers>
 #include <random>
 
+#include "segmentation/head_survey.h"
 #include "segmentation/voxel_morphology.h"
 
 namespace planlight::test {
@@ -25,9 +26,12 @@ struct Signals {
     Volume fat, water;
 };
 
-Signals signals_of(const Volume& ct, const SkinMask& body, const MrContrast& contrast) {
+/// A voxel of the rim between air and skin has the HU of fat, and is none: within the skin's thickness there is water.
+Signals signals_of(const Volume& ct, const SkinMask& body, const MrContrast& contrast, double skin_mm) {
     Signals s{ct, ct};
     const VoxelGrid grid = grid_of(ct);
+    const double rim_mm = grid.spacing_mm.minCoeff() / 2;  // from the surface to the first voxel's centre
+    const std::vector<float> depth_mm = distance_from(body.body, 0, grid, 4);
     for (std::size_t v = 0; v < ct.values.size(); ++v) {
         const float hu = ct.values[v];
         s.fat.values[v] = s.water.values[v] = 0;
@@ -40,6 +44,8 @@ Signals signals_of(const Volume& ct, const SkinMask& body, const MrContrast& con
         if (hu < -400) {
             const float share = std::clamp((hu + 1000) / 1000, 0.0F, 1.0F);
             s.water.values[v] = share * contrast.soft;
+        } else if (hu < -30 && static_cast<double>(depth_mm[v]) - rim_mm < skin_mm) {
+            s.water.values[v] = contrast.soft * std::clamp((hu + 1000) / 1000, 0.0F, 1.0F);
         } else if (hu < -30) {
             s.fat.values[v] = contrast.fat * std::clamp((hu + 1000) / 920, 0.0F, 1.0F);
         } else if (hu < 130) {
@@ -78,7 +84,7 @@ MrDraw mr_like(const Volume& ct, const SkinMask& body, std::uint32_t seed, const
         return std::uniform_real_distribution<double>(from, to)(random);
     };
     const MrContrast contrast = look.contrast.value_or(kContrasts[seed % kContrasts.size()]);
-    const Signals signals = signals_of(ct, body, contrast);
+    const Signals signals = signals_of(ct, body, contrast, look.skin_mm);
     Vector3d spacing = Vector3d::Constant(uniform(look.least_mm, 2.0));
     double slice_mm = spacing.z();  // of what is measured of each step: the rest is a gap
     const bool thick = uniform(0, 1) < 0.25;

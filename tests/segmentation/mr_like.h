@@ -28,6 +28,9 @@ struct MrLook {
     std::optional<MrContrast> contrast;       ///< else T1, T2, FLAIR or PD by the seed
     std::optional<double> fat_shift_mm = {};  ///< else up to 1.5
     std::optional<double> noise = {};         ///< of the soft tissue; else 0.01 to 0.15
+    /// Epidermis and dermis, which are water, over the fat: 1.5 to 2.5 mm on scalp and face; less on the lids, under
+    /// which no fat lies. 0: what a CT's voxels mix of skin and air passes for fat.
+    double skin_mm = 1.5;
 };
 
 /// Dark bone, bright fat (T1), bright water (T2), dark water (FLAIR) or all alike (PD), 0.8 to 2 mm (thick slices with

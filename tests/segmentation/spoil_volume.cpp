@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "planning_io/types/statistics.h"
 #include "segmentation/volume_sample.h"
@@ -34,6 +35,17 @@ void blend_with_moved(Volume& volume, const Eigen::Vector3d& by_mm, double degre
                 value = static_cast<float>((1 - share) * static_cast<double>(value) + share * moved);
             }
     });
+}
+
+void divide_by_another(Volume& volume) {
+    const double tissue = static_cast<double>(quantile(volume.values, 0.95));
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(0, 0.02);
+    for (float& v : volume.values) {
+        const double signal = static_cast<double>(v) / tissue, one = signal * signal + noise(random),
+                     other = signal * (1.2 - signal) + noise(random);
+        v = static_cast<float>(500 + 1000 * one * other / std::max(one * one + other * other, 1e-12));
+    }
 }
 
 }  // namespace planlight::test

@@ -76,6 +76,7 @@ void add_heads_askew(Cases& of) {
 void add_rare_contrasts(Cases& of) {
     of.in_contrast("fat is dark", Fate::not_bad, {"fat-suppressed", 0.08F, 0.5F, 0.04F});
     of.in_contrast("bone shines half", Fate::not_bad, {"UTE", 0.8F, 0.7F, 0.4F});
+    of.in_contrast("fat alone is bright", Fate::not_bad, {"fat image", 1.0F, 0.05F, 0.25F});
     of.in_contrast("blood alone is bright", Fate::not_bad, {"ToF", 0.35F, 0.22F, 0.03F});
 }
 
@@ -89,6 +90,7 @@ void add_spoilt_volumes(Cases& of) {
     for (const int percent : {8, 16, 24})
         of.spoilt("8 bits, dark end cut at " + std::to_string(percent) + " %", Fate::not_bad,
                   [percent](Volume& mr) { window_to_8_bits(mr, percent / 100.0); });
+    of.spoilt("ratio of two images, noise in the air", Fate::not_bad, divide_by_another);
     of.spoilt("moved by 9 mm", Fate::said, [](Volume& mr) { blend_with_moved(mr, {3, 7, -4.7}, 0); });
     of.spoilt("moved by 6 mm", Fate::said, [](Volume& mr) { blend_with_moved(mr, {0, 6, 0}, 0); });
     of.spoilt("moved by 4 mm and 5 degrees", Fate::said, [](Volume& mr) { blend_with_moved(mr, {0, 2, 3.5}, 5); });
