@@ -17,9 +17,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kStep_mm = 0.25;
-constexpr int kSide = 32;                          // samples on each side of the vertex: 8 mm
-constexpr double kDeeper_mm = 2;                   // as thick as the skin of a scalp over its fat
-constexpr double kOfVoxel = 0.6;                   // but more than half a voxel, which may be a thick slice
+constexpr int kSide = 32;  // samples on each side of the vertex: 8 mm
+// Deeper than the edge's own blur, which is of about a voxel, and still in the skin: that of a scalp is 1.5 to 2.5 mm
+// thick, and the fat under it shines. But more than half a voxel, which may be a thick slice.
+constexpr double kOfBlur = 1.5, kLeast_mm = 1.5, kMost_mm = 2, kOfVoxel = 0.6;
 using Profile = std::array<float, 2 * kSide + 1>;  // from the inside out
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -159,7 +160,8 @@ std::size_t move_to_edges(TriangleMesh& mesh, const Volume& volume, double thres
         // How long a voxel is along the normal.
         const double voxel_mm =
             (volume.ct_from_voxel.linear().transpose() * mesh.normals_in_ct[v]).cwiseAbs().maxCoeff();
-        const double deeper_mm = std::min(std::max(kDeeper_mm, kOfVoxel * voxel_mm), 4.0);
+        const double in_skin_mm = std::clamp(kOfBlur * voxel_mm, kLeast_mm, kMost_mm),
+                     deeper_mm = std::min(std::max(in_skin_mm, kOfVoxel * voxel_mm), 4.0);
         moves_mm[v] = half_way(profiles[v], threshold, settings.reach_mm, static_cast<int>(deeper_mm / kStep_mm));
     });
     const auto found = std::count_if(moves_mm.begin(), moves_mm.end(), [](double move) { return !std::isnan(move); });

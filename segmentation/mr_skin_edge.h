@@ -13,10 +13,10 @@ struct EdgeSettings {
 };
 
 /// Moves the skin's vertices along their normals to the outermost place where the volume's own profile is half way
-/// between the air outside and what lies 2 mm deeper (the search along rays of BET2's outer skin, Jenkinson et al.
-/// 2005, but not to the crest beneath, which is the fat's). The coils of an MR scanner make one side of a head several
-/// times as bright as the other; one threshold for all lies outside the edge there and inside it here. Lids and cut
-/// planes stay. Values that are not finite are never used.
+/// between the air outside and what lies 1.5 to 2 mm deeper, by the size of the voxels (the search along rays of BET2's
+/// outer skin, Jenkinson et al. 2005, but not to the crest beneath, which is the fat's). The coils of an MR scanner
+/// make one side of a head several times as bright as the other; one threshold for all lies outside the edge there and
+/// inside it here. Lids and cut planes stay. Values that are not finite are never used.
 ///
 /// `values` are `leveled_values`, `threshold` what made the mesh. Returns how many vertices had an edge; the others
 /// move with their neighbours.

@@ -157,8 +157,10 @@ TEST(MrSkinEdge, BrightFatUnderADimSkinDoesNotDrawItInwards) {
     const Errors errors = errors_of(triangulate_skin(volume, mask));
     // Voxels of 1.2 mm mix the fat into the skin: no profile shows where it ends. The half of the fat's crest lies 1.6
     // mm deep.
-    EXPECT_LT(errors.rms, 1.1);
-    EXPECT_LT(errors.p99, 1.4);
+    RecordProperty("rms_um", static_cast<int>(1000 * errors.rms));
+    RecordProperty("p99_um", static_cast<int>(1000 * errors.p99));
+    EXPECT_LT(errors.rms, 0.85);
+    EXPECT_LT(errors.p99, 1.25);
 }
 
 TEST(MrSkinEdge, MovesNothingFarWhereTheThresholdIsRight) {
@@ -169,9 +171,10 @@ TEST(MrSkinEdge, MovesNothingFarWhereTheThresholdIsRight) {
     const Errors moved = errors_of(triangulate_skin(volume, mask, settings));
     volume.modality = "";
     const Errors plain = errors_of(triangulate_skin(volume, mask, settings));
-    EXPECT_LT(moved.rms, plain.rms + 0.02);
-    EXPECT_NEAR(moved.front, plain.front, 0.1);
-    EXPECT_NEAR(moved.back, plain.back, 0.06);
+    // 1.5 mm deeper an edge of 0.8 mm (1 sigma) has risen to 97 %, and the half of that lies 0.03 mm further out.
+    EXPECT_LT(moved.rms, plain.rms + 0.03);
+    EXPECT_NEAR(moved.front, plain.front, 0.13);
+    EXPECT_NEAR(moved.back, plain.back, 0.09);
 }
 
 }  // namespace
