@@ -132,7 +132,7 @@ struct Exchange {
     double times = 0;
 };
 
-/// The exchange of two slices after which the row fits together best. Without a fault 1.0 at most along any axis of 23
+/// The exchange of two slices after which the row fits together best. Without a fault 1.05 at most along any axis of 23
 /// heads (`measure_heads`, column "exchange"), for in noise alone one order is as good as another; where two slices
 /// were exchanged 1.4 to 2 and more.
 ///
