@@ -156,32 +156,38 @@ void judge_layers(const Volume& volume, bool air_is_blank, double faint_share, S
             "Give the series in HU if there is one, and look at the skin in the report.");
 }
 
-/// How a head whose nose is not in front may lie against its header: the half turn after which a nose is there, in
-/// words; or nothing. A mirror image of a head looks the same as some half turn of it.
-std::string nose_elsewhere(const TriangleMesh& skin, const HeadBall& ball) {
+/// How a head lies whose nose is not in front: in words, empty where no nose is found elsewhere.
+struct OtherwiseThanHeader {
+    std::string words;
+    double nose_mm = 0;
+};
+
+/// By the half turn after which a nose is in front. A mirror image of a head looks the same as some half turn of it.
+OtherwiseThanHeader nose_elsewhere(const TriangleMesh& skin, const HeadBall& ball) {
     const std::pair<Eigen::Vector3d, const char*> turns[] = {
         {{-1, -1, 1}, "the head looks to the back"},
         {{1, -1, -1}, "the head is upside down and looks to the back"},
         {{-1, 1, -1}, "the head is upside down"}};
-    std::string found;
+    OtherwiseThanHeader found;
     double best_mm = kSureNose_mm * std::min(1.0, ball.radius_mm / 72);
     for (const auto& [signs, words] : turns) {
         TriangleMesh turned = skin;
         for (auto& p : turned.vertices_in_ct) p = ball.centre_in_ct + signs.cwiseProduct(p - ball.centre_in_ct);
         const double nose_mm = nose_length_mm(turned, ball, {ball.centre_in_ct});
-        if (nose_mm > best_mm)
-            best_mm = nose_mm, found = fmt::format("{}, where a nose stands out by {:.0f} mm", words, nose_mm);
+        if (nose_mm > best_mm) best_mm = nose_mm, found = {words, nose_mm};
     }
     return found;
 }
 
 void judge_face(const TriangleMesh& skin, const HeadBall& ball, SkinJudgement& r) {
     if (!(r.nose_mm < nose_due_mm(r))) return;
-    if (const std::string elsewhere = nose_elsewhere(skin, ball); !elsewhere.empty())
-        return add(r.doubts,
-                   "By its header " + elsewhere +
-                       ": the header does not say how the head lies, and left and right may be exchanged as well",
-                   "Convert the series again from DICOM, and compare the sides with what is known of the patient.");
+    if (const OtherwiseThanHeader found = nose_elsewhere(skin, ball); !found.words.empty())
+        return add(
+            r.doubts,
+            fmt::format("By its header {}, where a nose stands out by {:.0f} mm: the header does not say how the "
+                        "head lies, and left and right may be exchanged as well",
+                        found.words, found.nose_mm),
+            "Convert the series again from DICOM, and compare the sides with what is known of the patient.");
     add(r.doubts,
         fmt::format("The face is not there: nothing stands out before the cheeks by more than {:.0f} mm where a nose "
                     "should (noses have 25 to 50 mm); it was taken away, covered or cut off",

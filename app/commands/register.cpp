@@ -151,6 +151,7 @@ int run_register(const RegisterOptions& options) {
             {"scale_sigma", result.scale_sigma},
             {"skin_movement_mm", result.skin_movement_mm},
             {"skin_offset_mm", result.skin_offset_mm},
+            {"shape_change_mm", result.shape_change_mm},
             {"rig", result.rig ? nlohmann::json(rig_state_json(*result.rig)) : nlohmann::json()},
             {"items", items},
             {"seconds", {{"initial", result.initial_match_s}, {"fine", result.refine_s}}}};

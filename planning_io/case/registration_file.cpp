@@ -137,6 +137,7 @@ std::string text_of(const RegistrationResult& result) {
                      {"scale_sigma", result.scale_sigma},
                      {"skin_movement_mm", result.skin_movement_mm},
                      {"skin_offset_mm", result.skin_offset_mm},
+                     {"shape_change_mm", result.shape_change_mm},
                      {"covariance", json_of(result.covariance)},
                      {"initial_match_s", result.initial_match_s},
                      {"refine_s", result.refine_s},
@@ -185,6 +186,7 @@ RegistrationResult registration_of_text(const std::string& text, const fs::path&
     result.scale_sigma = number("scale_sigma");
     result.skin_movement_mm = number("skin_movement_mm");
     result.skin_offset_mm = number("skin_offset_mm");
+    result.shape_change_mm = number("shape_change_mm");
     if (const auto skin = root.find("skin_displacement")) result.skin = skin_of(*skin);
     if (const auto covariance = root.find("covariance")) result.covariance = covariance_of(*covariance);
     result.initial_match_s = number("initial_match_s");

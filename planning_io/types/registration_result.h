@@ -51,6 +51,7 @@ struct RegistrationResult {
     PoseCovariance covariance;               ///< how uncertain T_ini is, for `predicted_error` at any point
     double skin_movement_mm = 0;             ///< of the skin since the CT, rms, as the residuals tell it
     double skin_offset_mm = 0;               ///< of the whole skin; positive outside of the CT's
+    double shape_change_mm = 0;  ///< how far light could be off because the head is smoothly deformed against the CT's
     double initial_match_s = 0, refine_s = 0;
     RigidTransform initial_patient_from_ct = RigidTransform::Identity();  ///< before the ICP (Fig. 3 left)
     SkinDisplacement skin;  ///< where the scan found the skin at this pose; not known where only landmarks were matched

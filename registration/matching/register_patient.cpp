@@ -11,6 +11,7 @@
 #include "registration/matching/free_space.h"
 #include "registration/matching/judge_match.h"
 #include "registration/matching/measure_displacement.h"
+#include "registration/matching/smooth_deformation.h"
 
 namespace planlight {
 namespace {
@@ -56,6 +57,12 @@ void widen_by_spread(const SkinDisplacement& skin, const RegistrationSettings& s
     covariance.of_turn_and_shift.diagonal().tail<3>().array() += std::pow(settings.shift_by_spread * more_mm, 2);
 }
 
+/// A head of another shape: where it was bent along its own skin no pose is right, and the light is off by as much.
+void widen_by_shape(double shape_change_mm, PoseCovariance& covariance) {
+    constexpr double kSigmas = 2.8;  // of a 95 % bound in space
+    covariance.of_turn_and_shift.diagonal().tail<3>().array() += std::pow(shape_change_mm / kSigmas, 2);
+}
+
 /// The fine match from `start`, and what it is judged by; returns the skin's fit for the judgement. `seen`: all that
 /// the devices saw, cloth as well: the way back from there must be free.
 FineMatch match_finely(const PointCloud& cloud, const PointCloud& seen, const SkinLut& lut,
@@ -72,7 +79,10 @@ FineMatch match_finely(const PointCloud& cloud, const PointCloud& seen, const Sk
     result.refine_s = seconds_since(start);
     result.patient_from_ct = icp.ct_from_rig.inverse();
     result.skin = measure_displacement(cloud, lut, icp.ct_from_rig);
+    const SmoothDeformation deformation = fit_smooth_deformation(cloud, lut, icp.ct_from_rig);
+    result.shape_change_mm = deformation.probability() * deformation.p95_mm;
     widen_by_spread(result.skin, settings, result.covariance);
+    widen_by_shape(result.shape_change_mm, result.covariance);
 
     FineMatch fine{lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm,
                                settings.moved_skin ? settled.offset_mm : 0),
