@@ -108,8 +108,8 @@ void judge_fine_match(const RegistrationSettings& settings, const FineMatch& fin
     judgement.ask_if(
         result.shape_change_mm > settings.max_shape_change_mm,
         fmt::format("the head of the scan fits the CT better when it is stretched, sheared or twisted, and light could "
-                    "lie {:.1f} mm off: another patient, or one who moved slowly during the CT: look at the light on "
-                    "landmarks",
+                    "lie {:.1f} mm off: another patient, one who moved during the CT, a distorted MR or a wrong "
+                    "calibration: look at the light on landmarks",
                     result.shape_change_mm));
     const bool weak = fine.weakest.sigma_mm > settings.max_weakest_sigma_mm;
     judgement.ask_if(weak, fmt::format("the patient could {} by {:.1f} mm unnoticed: scan {} as well",

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -9,6 +10,10 @@
 
 // One possible skin between CT and operation, and how likely it is: the inside of `refine_pose_deformable`.
 namespace planlight {
+
+/// The skins that are tried: over what length each is alike, and how large each patch's own part is against that.
+inline constexpr std::array kCorrelations_mm{10., 15., 22., 33., 50., 75.};
+inline constexpr std::array kOwnParts{0.01, 0.1, 1., 10.};
 
 /// How likely one possible skin is (over what length it is alike, how large each patch's own part is), and what pose,
 /// covariance, offset and scale are if it is so.

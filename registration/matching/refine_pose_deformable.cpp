@@ -47,12 +47,11 @@ DeformablePose one_step(const PointCloud& cloud, const SkinLut& lut, const Rigid
     for (const SkinPatch& p : patches) centre += p.x_in_ct / static_cast<double>(patches.size());
     const DeformableProblem problem(patches, centre, settings);
 
-    constexpr std::array kCorrelations_mm{10., 15., 22., 33., 50., 75.};
-    constexpr std::array kOwns{0.01, 0.1, 1., 10.};
-    std::array<std::array<PlausibleSkin, kOwns.size()>, kCorrelations_mm.size()> judged;
+    std::array<std::array<PlausibleSkin, kOwnParts.size()>, kCorrelations_mm.size()> judged;
     tbb::parallel_for(std::size_t{0}, kCorrelations_mm.size(), [&](std::size_t at) {
         const MatrixXd alike = problem.alike(kCorrelations_mm[at]);
-        for (std::size_t j = 0; j < kOwns.size(); ++j) judged[at][j] = judge(problem, alike, kOwns[j], settings);
+        for (std::size_t j = 0; j < kOwnParts.size(); ++j)
+            judged[at][j] = judge(problem, alike, kOwnParts[j], settings);
     });
 
     double best = -std::numeric_limits<double>::infinity(), sum = 0;

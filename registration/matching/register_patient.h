@@ -55,10 +55,10 @@ struct RegistrationSettings {
     /// What of that spread is more than still skin usually shows stands for a shift of the pose that nothing else
     /// shows: this many times as large, one standard deviation each way, in the predicted error.
     double still_skin_spread_mm = 0.15, shift_by_spread = 2;
-    double max_shape_change_mm = 1;    ///< `SmoothDeformation`, times its probability; above: ask
-    bool mirror_test = true;           ///< match the mirrored scan too
-    double min_mirror_ratio = 1.15;    ///< of the mirrored scan's cost; below: ask
-    double mirror_fits_better = 0.87;  ///< below: no
+    double max_shape_change_mm = 1.25;  ///< `SmoothDeformation`, times its probability; above: ask
+    bool mirror_test = true;            ///< match the mirrored scan too
+    double min_mirror_ratio = 1.15;     ///< of the mirrored scan's cost; below: ask
+    double mirror_fits_better = 0.87;   ///< below: no
     /// Where the scan was lit or seen from (a device that all points were seen by), rig frame: then the way back from
     /// every point must be free in the CT too.
     std::optional<Eigen::Vector3d> viewpoint_in_rig;

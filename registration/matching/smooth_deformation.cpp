@@ -112,12 +112,10 @@ SmoothDeformation fit_smooth_deformation(const PointCloud& cloud, const SkinLut&
         X.row(i).tail<kModes>() =
             patches[static_cast<std::size_t>(i)].normal.transpose() * movements.modes.middleRows<3>(3 * i);
 
-    constexpr std::array kCorrelations_mm{10., 15., 22., 33., 50., 75.};
-    constexpr std::array kOwns{0.01, 0.1, 1., 10.};
-    std::array<std::array<Solution, 1 + kTimes.size()>, kCorrelations_mm.size() * kOwns.size()> solved;
+    std::array<std::array<Solution, 1 + kTimes.size()>, kCorrelations_mm.size() * kOwnParts.size()> solved;
     tbb::parallel_for(std::size_t{0}, solved.size(), [&](std::size_t at) {
-        MatrixXd K = problem.alike(kCorrelations_mm[at / kOwns.size()]);
-        K.diagonal() += kOwns[at % kOwns.size()] * problem.own;
+        MatrixXd K = problem.alike(kCorrelations_mm[at / kOwnParts.size()]);
+        K.diagonal() += kOwnParts[at % kOwnParts.size()] * problem.own;
         const Eigen::LLT<MatrixXd> factor(K);
         if (factor.info() != Eigen::Success) return;
         const MatrixXd normal = X.transpose() * factor.solve(X);

@@ -327,8 +327,8 @@ TEST_P(ShippedWords, SayWholeSentencesAsASessionPutsThemTogether) {
           "0.012 degrees).",
           "The skin lies 0.4 mm inside of that of the CT, and has moved by 0.2 mm (rms).",
           "the head of the scan fits the CT better when it is stretched, sheared or twisted, and light could lie 1.9 "
-          "mm "
-          "off: another patient, or one who moved slowly during the CT: look at the light on landmarks",
+          "mm off: another patient, one who moved during the CT, a distorted MR or a wrong calibration: look at the "
+          "light on landmarks",
           "the patient could turn about the left-right axis by 1.9 mm unnoticed: scan forehead and chin, or an ear as "
           "well",
           "the scan alone: another pose fits nearly as well (ratio 1.13)",

@@ -93,6 +93,7 @@ TEST(CtHead, AFaceThatSaggedIsAskedAboutByHowItsPlacesStand) {
     RegistrationSettings without;
     without.max_skin_spread_mm = 100;
     without.shift_by_spread = 0;
+    without.max_shape_change_mm = 100;  // (tells some of them as well)
     int wrong = 0, wrong_without = 0, told_by_it = 0, within = 0, within_without = 0;
     for (unsigned i = 0; i < 24; ++i) {
         const RigidTransform rig_from_ct = random_pose(i + 90);
