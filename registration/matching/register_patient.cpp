@@ -76,13 +76,13 @@ FineMatch match_finely(const PointCloud& cloud, const PointCloud& seen, const Sk
     result.covariance = settled.covariance;
     result.skin_movement_mm = settled.movement_mm;
     result.skin_offset_mm = settled.offset_mm;
-    result.refine_s = seconds_since(start);
     result.patient_from_ct = icp.ct_from_rig.inverse();
     result.skin = measure_displacement(cloud, lut, icp.ct_from_rig);
     const SmoothDeformation deformation = fit_smooth_deformation(cloud, lut, icp.ct_from_rig);
     result.shape_change_mm = deformation.probability() * deformation.p95_mm;
     widen_by_spread(result.skin, settings, result.covariance);
     widen_by_shape(result.shape_change_mm, result.covariance);
+    result.refine_s = seconds_since(start);
 
     FineMatch fine{lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm,
                                settings.moved_skin ? settled.offset_mm : 0),
