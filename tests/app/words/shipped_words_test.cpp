@@ -155,8 +155,10 @@ constexpr const char* kSaying[] = {
     "registration/devices/gstreamer_camera.cpp",
     "registration/devices/recorded_camera.cpp",
     "registration/devices/recorded_projector.cpp",
-    "segmentation/skin_judgement.cpp",
-    "segmentation/series_doubts.cpp",
+    "segmentation/doubt_head.cpp",
+    "segmentation/doubt_surface.cpp",
+    "segmentation/doubt_series.cpp",
+    "segmentation/skin_doubts.h",
 };
 
 /// What these sources say is shown in the window, but for the texts that stand here with the reason.
