@@ -160,7 +160,8 @@ void DrawingRenderer::Parts::draw_stroke(const Stroke& stroke, const RenderSetti
     PointCounts here;
     light_points(stroke, settings, here);
     counts += here;
-    if (stroke.item >= 0 && static_cast<std::size_t>(stroke.item) < counts.items.size())
+    const bool of_item = stroke.item >= 0 && static_cast<std::size_t>(stroke.item) < counts.items.size();
+    if (of_item && stroke.kind != StrokeKind::check_mark)  // (beside the item, for the cameras)
         counts.items[static_cast<std::size_t>(stroke.item)] += here;
     add_ribbon(stroke, is_partly_lit_ring(stroke, settings, counts));
     raster.flush(dimmed(stroke.colour, brightness), picture);

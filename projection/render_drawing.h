@@ -46,7 +46,8 @@ struct PointCounts {
 
 /// What became of the drawing's points in one picture, without those of labels.
 struct RenderCounts : PointCounts {
-    std::vector<PointCounts> items;  ///< one for each of PlanDrawing::items; of those that are not drawn no points
+    /// One for each of PlanDrawing::items, without its check marks; of those that are not drawn no points.
+    std::vector<PointCounts> items;
     std::vector<PartlyLitRing> partly_lit;
     std::vector<int> labels_lit, labels_left_out;  ///< items; a label is left out when not all of it can be lit
     bool card_lit = false;
@@ -56,7 +57,7 @@ struct RenderCounts : PointCounts {
 std::vector<std::string> sentences(const std::vector<PartlyLitRing>& rings, const PlanDrawing& drawing);
 
 /// One sentence for every item of whose lines a twentieth or more has no light, and for what reason most of it: a line
-/// that ends where the light does looks like one that is planned to end there. Not for those of `partly_lit`.
+/// that ends where the light does looks like one planned to end there; then what to do. Not for those of `partly_lit`.
 std::vector<std::string> sentences_of_unlit(const RenderCounts& counts, const PlanDrawing& drawing);
 
 /// One sentence that names the items whose labels cannot be lit whole; empty when all can.

@@ -43,17 +43,16 @@ std::vector<std::string> sentences_of_unlit(const RenderCounts& counts, const Pl
         const double dark = 1 - light.lit_share();
         if (light.points == 0 || dark < kSaid || std::ranges::any_of(counts.partly_lit, is_this)) continue;
         if (light.lit == 0) {
-            said.push_back(fmt::format("{}: no light reaches it from here. Turn the patient or the projector.", name));
+            said.push_back(fmt::format("{}: no light reaches it from here.", name));
             continue;
         }
         const char* where = light.outside >= std::max(light.hidden, light.too_steep) ? "out of the projector's picture"
                             : light.hidden >= light.too_steep                        ? "behind other skin"
                                                                                      : "where the skin turns away";
-        said.push_back(fmt::format(
-            "{}: about {:.0f} % of it has no light, most of that {}; it goes on where the light ends. Turn the patient "
-            "or the projector.",
-            name, 5 * std::round(20 * dark), where));
+        said.push_back(fmt::format("{}: about {:.0f} % of it has no light ({}); it goes on where the light ends.", name,
+                                   5 * std::round(20 * dark), where));
     }
+    if (!said.empty()) said.push_back("Turn the patient or the projector to light the rest.");
     return said;
 }
 

@@ -41,6 +41,7 @@ Status status_of(const Session& session, const Session::Update& update, const Li
     std::vector<std::string> details = sentences(update.overlay.counts.partly_lit, session.lit_drawing());
     const std::vector<std::string> unlit = sentences_of_unlit(update.overlay.counts, session.lit_drawing());
     details.insert(details.end(), unlit.begin(), unlit.end());
+    const bool partly_lit = !details.empty();
     details.insert(details.end(), ruling.details.begin(), ruling.details.end());
     if (!update.camera_doubt.empty()) details.push_back(update.camera_doubt + ".");
     if (card_asked && ruling.ask_to_verify && !session.item_of_moment() &&
@@ -53,10 +54,9 @@ Status status_of(const Session& session, const Session::Update& update, const Li
                                       session.drawing().items[*item].name));
     const bool aligned = ruling.trust == LightTrust::aligned;
     Status status{aligned ? StatusKind::aligned : StatusKind::check, ruling.headline, details};
-    if (const std::string hidden = sentence_of_hidden(session); !hidden.empty()) {
-        status.details.push_back(hidden);
-        if (aligned) status.headline = "What is shown of the plan is on the skin.";
-    }
+    const std::string hidden = sentence_of_hidden(session);
+    if (!hidden.empty()) status.details.push_back(hidden);
+    if (aligned && (partly_lit || !hidden.empty())) status.headline = "What is shown of the plan is on the skin.";
     if (const std::string bare = sentence_of_bare(session); aligned && !session.item_of_moment() && !bare.empty())
         status.details.push_back(bare);
     return status;

@@ -304,8 +304,8 @@ TEST_P(ShippedWords, SayWholeSentencesAsASessionPutsThemTogether) {
           "No projector: monitor HDMI-2 is no longer connected.",
           "No projector: projector process: it was ended from outside, or crashed.",
           "LOOK: the light comes late.",
-          "Osteotomy: about 25 % of it has no light, most of that behind other skin; it goes on where the light ends. "
-          "Turn the patient or the projector.",
+          "Osteotomy: about 25 % of it has no light (behind other skin); it goes on where the light ends.",
+          "Turn the patient or the projector to light the rest.",
           "The light comes 25 to 40 ms later than the projector promises.",
           "LOOK: \"Borehole 1: left\" lies 1.3 mm beside its place.",
           "only 3 markers were found by both cameras; 5 are needed.",
