@@ -59,7 +59,10 @@ int run_fetch(const FetchOptions& options) {
     const DicomPeer archive = archive_of(options.archive);
     if (options.check) {
         ask_whether_it_answers(archive);
-        fmt::print("{} answers.\n", archive.name());
+        if (options.json)
+            std::cout << json_text(nlohmann::json{{"archive", archive.name()}, {"answers", true}}) << '\n';
+        else
+            fmt::print("{} answers.\n", archive.name());
         return 0;
     }
     const SeriesQuery& q = options.query;

@@ -30,7 +30,7 @@ struct PatternsOptions {
 /// Refused where two options contradict each other: the pictures would not be those that were asked for.
 StripeSettings stripes_of(const PatternsOptions& options) {
     const auto refuse = [&](const std::string& what, const std::string& remedy) {
-        throw InputError({}, fmt::format("the set \"{}\" has its own {}", options.set, what), remedy);
+        throw Error(ExitCode::usage, fmt::format("the set \"{}\" has its own {}", options.set, what), remedy);
     };
     const StripeSettings usual;
     StripeSettings stripes;

@@ -116,9 +116,10 @@ void measure_recorded(const ProjectorOptions& options, ProjectorReport& report) 
         any = true;
     }
     if (!any)
-        throw InputError(options.recording,
-                         "holds no recording of light (latency/, response/ or cycle/, each with its light.json)",
-                         "Record one; registration/projector_measurement/README.md says how.");
+        throw InputError(
+            options.recording, "holds no recording of light (latency/, response/ or cycle/, each with its light.json)",
+            "Record one; registration/projector_measurement/README.md (below /usr/share/doc/planlight when "
+            "installed) says how.");
 }
 
 template <class Result>
@@ -131,8 +132,8 @@ int run_projector(const ProjectorOptions& options) {
     if (options.identify) return identify_monitors(options);
     if (options.show) return show_light(options);
     if (options.recording.empty() && options.simulate.empty() && options.room.empty())
-        throw InputError({}, "there is nothing to measure",
-                         "Give --room, a folder of recorded light, --simulate, --show or --identify.");
+        throw Error(ExitCode::usage, "there is nothing to measure",
+                    "Give --room, a folder of recorded light, --simulate, --show or --identify.");
     const Path page = options.out.empty() ? Path() : Path(options.out).replace_extension(".html");
     check_pdf(options.pdf);
     ProjectorReport report;

@@ -143,6 +143,7 @@ Run add_replay(CLI::App& app) {
     language_option(sub, o.language);
     theme_option(sub, o.theme);
     json_flag(sub, o.json);
+    show->excludes(sub->get_option("--json"));  // whoever closes the window early leaves nothing to print
     return [options] { return run_replay(*options); };
 }
 

@@ -208,6 +208,7 @@ Run add_review(CLI::App& app) {
     language_option(sub, o.recorded.language);
     theme_option(sub, o.recorded.theme);
     json_flag(sub, o.json);
+    landmarks->excludes(sub->get_option("--json"));  // they are clicked in a window
     return [options] { return run_review(*options); };
 }
 

@@ -52,6 +52,11 @@ std::vector<StereoFrame> record_frames(simulation::SimulatedRig& rig, const Simu
 }
 
 int run_simulate(const SimulateOptions& options) {
+    if (options.addresses.size() != 2)
+        throw Error(
+            ExitCode::usage,
+            fmt::format("--addresses has {} of the two that are wanted, one for each camera", options.addresses.size()),
+            "Give --addresses 127.0.0.1,127.0.0.2.");
     if (!options.board.empty()) return run_simulate_board(options);
     if (options.volume.empty())
         throw Error(ExitCode::usage, "neither a patient nor a board is given",
@@ -113,7 +118,9 @@ Run add_simulate(CLI::App& app) {
     SimulateOptions& o = *options;
     auto* sub = add_command(app, "simulate", "Captures of a simulated room, with ground truth in a file of its own",
                             "simulate Cranium.inv3 --plan frontal_defect.mrk.json --preset paper --seed 3 --out room");
-    auto* volume = sub->add_option("volume", o.volume, "The patient: DICOM folder or file, or InVesalius project");
+    auto* volume = sub->add_option(
+        "volume", o.volume,
+        "The patient: DICOM folder or file, NIfTI, FreeSurfer MGZ, NRRD, MetaImage, or InVesalius project (.inv3)");
     sub->add_option(
            "--board", o.board,
            "Instead of a patient a calibration board, as for `calibrate`; writes captures/ and truth.json. Served: "
@@ -148,7 +155,7 @@ Run add_simulate(CLI::App& app) {
     auto* serve = sub->add_option(
         "--serve", o.serve,
         "Serve the room as hardware until Ctrl-C: two GigE Vision cameras, and the light of this monitor; "
-        "writes room.json, rig.json, truth.json");
+        "writes room.json, truth.json and, of a patient's room, rig.json (of a board's the calibration makes it)");
     sub->add_option("--addresses", o.addresses, "Of the served cameras, one each, of this machine")
         ->delimiter(',')
         ->capture_default_str()

@@ -53,8 +53,8 @@ private:
 
 int show_light(const ProjectorOptions& options) {
     if (options.monitor.empty() || options.keep.empty())
-        throw InputError({}, "showing needs the projector's monitor and a folder for the orders",
-                         "Give --monitor NAME and --keep FOLDER.");
+        throw Error(ExitCode::usage, "showing needs the projector's monitor and a folder for the orders",
+                    "Give --monitor NAME and --keep FOLDER.");
     note_end_signals();
     const SteadyClock clock;
     ProjectorWindowSettings settings;

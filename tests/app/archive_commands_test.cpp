@@ -56,6 +56,9 @@ protected:
 
 TEST_F(ArchiveCommands, ASeriesBecomesACaseAndWhatCameOfItIsFoundBesideIt) {
     EXPECT_EQ(run("fetch --check").exit_code, 0);
+    const auto checked = run("fetch --check --json");
+    ASSERT_EQ(checked.exit_code, 0) << checked.err;
+    EXPECT_EQ(nlohmann::json::parse(checked.out)["answers"], true);
     const auto stored = run("store series --json");
     ASSERT_EQ(stored.exit_code, 0) << stored.err;
     EXPECT_EQ(nlohmann::json::parse(stored.out)["stored"], 24);

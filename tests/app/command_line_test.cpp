@@ -79,6 +79,22 @@ TEST_F(CommandLineTest, APdfIsCalledSoAndStandsWhereItCanBeWritten) {
     expect_refused(run("projector recording --pdf none/page.pdf"), 7, "none");
 }
 
+TEST_F(CommandLineTest, OptionsThatDoNotMakeAWholeQuestionAreAMatterOfUsage) {
+    expect_refused(run("projector"), 2, "nothing to measure");
+    expect_refused(run("projector --show --keep light"), 2, "--monitor");
+    expect_refused(run("projector --show --monitor HDMI-2"), 2, "--keep");
+    expect_refused(run("simulate --board 'charuco 10x7 25 mm' --serve HDMI-2 --addresses 127.0.0.1 --out room"), 2,
+                   "one for each camera");
+    expect_refused(run("patterns --set fast --phase-steps 9 --out p"), 2, "its own number of shifts");
+    expect_refused(run("patterns --set multi-frequency --phase-period-px 20 --out p"), 2, "its own periods");
+    for (const char* name : {"light", "room", "p"}) EXPECT_FALSE(fs::exists(folder_ / name)) << name;
+}
+
+TEST_F(CommandLineTest, JsonIsNoPartOfWhatIsDoneInAWindow) {
+    expect_refused(run("review case --cloud cloud.ply --landmarks pairs.csv --json"), 2, "--landmarks excludes --json");
+    expect_refused(run("replay session.plrec --show --json"), 2, "--show excludes --json");
+}
+
 TEST_F(CommandLineTest, AMistypedCommandIsToldTheNearestOne) {
     expect_refused(run("regsiter case"), 2, "Is register meant?");
     expect_refused(run("Demo"), 2, "Is demo meant?");

@@ -209,8 +209,8 @@ TEST(PatternsCommand, WritesTheSettingsOfItsCapturesAndNothingOverAnother) {
     const std::string before = whole(root / "columns/patterns.json");
     expect_refused(run_planlight(size + "--set fast --out columns", root), 3, "exists already");
     EXPECT_EQ(whole(root / "columns/patterns.json"), before);
-    expect_refused(run_planlight(size + "--set fast --phase-steps 9 --out new", root), 3, "its own number of shifts");
-    expect_refused(run_planlight(size + "--set multi-frequency --phase-period-px 20 --out new", root), 3,
+    expect_refused(run_planlight(size + "--set fast --phase-steps 9 --out new", root), 2, "its own number of shifts");
+    expect_refused(run_planlight(size + "--set multi-frequency --phase-period-px 20 --out new", root), 2,
                    "its own periods");
     expect_refused(run_planlight("patterns --width 8192 --height 8192 --set multi-frequency --out new", root), 3,
                    "8192 x 8192");

@@ -47,7 +47,7 @@ TEST(ProjectorCommand, MeasuresARoomAndTheFolderThatItKept) {
     EXPECT_EQ(json::parse(configured.out)["latency"]["promised"]["broken"], 0);
 
     expect_refused(run_planlight("projector kept --part cycle", root), 3, "no recording of light");
-    expect_refused(run_planlight("projector", root), 3, "nothing to measure");
+    expect_refused(run_planlight("projector", root), 2, "nothing to measure");
     expect_refused(run_planlight("projector --simulate paper --light gamam=2", root), 3, "gamam");
     const fs::path light = root / "kept/latency/light.json";
     const std::string good = whole(light);
