@@ -52,10 +52,12 @@ void warn_of(const std::string& camera, const Exposure& exposure) {
             exposure.brightest_lit_grey, camera));
 }
 
+/// Where nothing is lit, nothing is known of what is.
 nlohmann::json json_of(const Exposure& exposure) {
-    return {{"saturated_share", exposure.saturated_share},
+    const auto of_lit = [&](double value) { return exposure.lit_share > 0 ? nlohmann::json(value) : nlohmann::json(); };
+    return {{"saturated_share", of_lit(exposure.saturated_share)},
             {"lit_share", exposure.lit_share},
-            {"brightest_lit_grey", exposure.brightest_lit_grey}};
+            {"brightest_lit_grey", of_lit(exposure.brightest_lit_grey)}};
 }
 
 int run_capture(const CaptureOptions& options) {

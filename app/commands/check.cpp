@@ -119,7 +119,7 @@ int run_check(CheckOptions options) {
                         {"rig_made_on", rig.made_on},
                         {"verdict", text_of(check.verdict)},
                         {"points", check.points},
-                        {"epipolar_px", check.epipolar_px},
+                        {"epipolar_px", check.epipolar_px > 0 ? Json(check.epipolar_px) : Json()},
                         {"projector_rms_px", if_placed(check.projector_rms_px)},
                         {"projector_after_px", if_placed(check.projector_after_px)},
                         {"camera_k1_off", if_placed(check.bent.k1_off)},
@@ -144,8 +144,9 @@ int run_check(CheckOptions options) {
     if (options.json)
         std::cout << json_text(result) << '\n';
     else
-        fmt::print("{}: {} points, epipolar error {:.2f} px, {}; check {} in {}.\n", text_of(check.verdict),
-                   check.points, check.epipolar_px, said_of_projector(check), log["checks"].size(), file.string());
+        fmt::print("{}: {} points, epipolar error {}, {}; check {} in {}.\n", text_of(check.verdict), check.points,
+                   check.epipolar_px > 0 ? fmt::format("{:.2f} px", check.epipolar_px) : "not known",
+                   said_of_projector(check), log["checks"].size(), file.string());
     if (check.verdict != DriftCheck::Verdict::good) throw CheckFailedError(check.reason, check.remedy);
     return 0;
 }

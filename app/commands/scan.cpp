@@ -20,6 +20,7 @@
 #include "registration/scan/check/camera_gamma.h"
 #include "registration/scan/clean/surface_triangles.h"
 #include "registration/scan/decode/merge_exposures.h"
+#include "registration/scan/decode/second_harmonic.h"
 #include "registration/tracking/markers_in_scan.h"
 
 namespace planlight {
@@ -33,7 +34,9 @@ struct ScanOptions {
     bool accept_movement = false, allow_missing = false, json = false;
 };
 
+/// Null of a camera that is not there.
 nlohmann::json counts(const DecodedView& view) {
+    if (view.width <= 1) return nullptr;
     return {
         {"decoded", view.decoded}, {"dark", view.dark}, {"saturated", view.saturated}, {"uncertain", view.uncertain}};
 }
@@ -81,6 +84,43 @@ void warn_of(const ScanResult& scan, const RigCalibration& rig) {
     if (drift.verdict == DriftCheck::Verdict::cameras_moved)
         warn(fmt::format("{}; the cloud may be off by millimetres and nothing in it shows where. {}", drift.reason,
                          drift.remedy));
+}
+
+/// Three shifts do not show what the gamma of projector and camera does to them.
+void warn_of_three_shifts(const ScanCapture& capture) {
+    constexpr double kLinear = 0.03, kMost = 0.3;
+    const char* remedy = "Show 4 shifts or more (usual are 5 or 8), or light without a gamma.";
+    for (const auto* frames : {&capture.left, &capture.right}) {
+        if (frames->empty() || !capture.partial.empty()) continue;
+        const auto share = largest_second_harmonic(*frames, capture.stripes);
+        if (!share)
+            return warn(fmt::format(
+                "fringes of three shifts, and too little is lit to measure what a gamma does to them: the light may be "
+                "read wrongly by a twentieth of a period ({:.1f} projector pixels). {}",
+                capture.stripes.phase_period_px / 20, remedy));
+        if (std::abs(*share) > kMost)
+            return warn(fmt::format(
+                "fringes of three shifts under a strong gamma (second harmonic {:.0f} % of the fringe): it is measured "
+                "and taken out, but at the crests nothing is left to read, and the cloud has gaps or is rough there. "
+                "{}",
+                100 * *share, remedy));
+        if (std::abs(*share) > kLinear)
+            return warn(fmt::format(
+                "fringes of three shifts under a gamma (second harmonic {:.0f} % of the fringe): it is measured and "
+                "taken out, but the cloud is noisier than by more shifts. {}",
+                100 * *share, remedy));
+    }
+}
+
+/// Light that was read, and whose code is not smooth round the pixels.
+void warn_of_ragged(const ScanResult& scan) {
+    const std::size_t placed = scan.raw.cloud.size() + scan.raw.disagree + scan.raw.outside_volume;
+    if (scan.raw.ragged <= placed + scan.raw.no_partner) return;
+    warn(fmt::format(
+        "more than half of the places that the light was read at are left out, because the code is not smooth round "
+        "them ({} ragged, {} placed): the pictures are too noisy or blurred for these patterns, or the stripes are "
+        "finer than a few camera pixels. Give more light, focus projector and cameras, or show wider stripes.",
+        scan.raw.ragged, placed));
 }
 
 /// By rig.json, as `check` says it.
@@ -197,6 +237,8 @@ int run_scan(const ScanOptions& options) {
     const ScanMovement movement = movement_in_scan(capture, scan.rig.rig.whole() ? scan.rig.rig : rig, scan.clean.kept);
     judge_movement(movement, options);  // before the devices, which the light on moving skin accuses wrongly
     warn_of(scan, rig);
+    for (const ScanCapture& one : captures) warn_of_three_shifts(one);
+    warn_of_ragged(scan);
     const std::vector<std::string> names = comments_of(named_rig_state(scan, rig, capture));
     write_cloud(scan.clean.kept, options.out, {}, names);
     if (!options.raw_out.empty()) write_cloud(scan.raw.cloud, options.raw_out, {}, names);
@@ -217,6 +259,8 @@ int run_scan(const ScanOptions& options) {
             {"removed",
              {{"no_partner", scan.raw.no_partner},
               {"disagree", scan.raw.disagree},
+              {"ragged", scan.raw.ragged},
+              {"ragged", scan.raw.ragged},
               {"outside_volume", scan.raw.outside_volume},
               {"jump", scan.clean.jump},
               {"grazing", scan.clean.grazing},
@@ -239,10 +283,11 @@ int run_scan(const ScanOptions& options) {
         std::cout << json_text(result) << '\n';
     } else {
         fmt::print(
-            "{} points by {} in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}){}.\n",
+            "{} points by {} in {} (raw {}; off the rays {}, ragged {}, jumps {}, grazing {}, small pieces {}, lonely "
+            "{}){}.\n",
             scan.clean.kept.size(), devices_of(scan, rig), options.out.string(), scan.raw.cloud.size(),
-            scan.raw.disagree, scan.clean.jump, scan.clean.grazing, scan.clean.small_piece, scan.clean.lonely,
-            said_of_cameras(scan));
+            scan.raw.disagree, scan.raw.ragged, scan.clean.jump, scan.clean.grazing, scan.clean.small_piece,
+            scan.clean.lonely, said_of_cameras(scan));
         if (!options.surface_out.empty())
             fmt::print("{} triangles over them in {}.\n", triangles.size(), options.surface_out.string());
     }

@@ -18,16 +18,17 @@ int identify_monitors(const ProjectorOptions& options) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < monitors.size(); ++i) {
         const Monitor& m = monitors[i];
-        list.push_back({{"number", i},
-                        {"name", m.name},
-                        {"width", m.width},
-                        {"height", m.height},
-                        {"refresh_hz", m.refresh_hz},
-                        {"x", m.x},
-                        {"y", m.y},
-                        {"primary", m.primary},
-                        {"model", m.model},
-                        {"serial", m.serial}});
+        list.push_back(
+            {{"number", i},
+             {"name", m.name},
+             {"width", m.width},
+             {"height", m.height},
+             {"refresh_hz", m.refresh_hz > 0 ? nlohmann::ordered_json(m.refresh_hz) : nlohmann::ordered_json()},
+             {"x", m.x},
+             {"y", m.y},
+             {"primary", m.primary},
+             {"model", m.model},
+             {"serial", m.serial}});
         if (!options.json)
             fmt::print("{} {}: {} x {}, {:g} Hz{}{}{}\n", i, m.name, m.width, m.height, m.refresh_hz,
                        m.primary ? ", primary" : "", m.model.empty() ? "" : ", " + m.model,

@@ -130,6 +130,14 @@ TEST_F(CommandsTest, LandmarksAloneAreAskedForAndWrongOnesAreRefused) {
     ASSERT_EQ(found.exit_code, 0) << found.err;
     EXPECT_EQ(json::parse(found.out)["verdict"], "ask");
     expect_one_clear_sentence(run_planlight("register case --pairs bad.csv --out refused.json", root()), 6, "landmark");
+    const std::string kept = read_text(root() / "pairs.json");
+    const auto refused = run_planlight("register case --pairs bad.csv --out pairs.json --json", root());
+    EXPECT_EQ(refused.exit_code, 6);
+    EXPECT_EQ(read_text(root() / "pairs.json"), kept) << "a match that may be used stays";
+    const json why = json::parse(refused.out);
+    for (const char* name : {"patient_from_ct", "weakest_sigma_mm", "skin_offset_mm", "skin_movement_mm",
+                             "shape_change_mm", "residual_median_mm"})
+        EXPECT_TRUE(why[name].is_null()) << name << " was not looked at";
     expect_one_clear_sentence(run_planlight("register case --pairs unsaid.csv --out refused2.json", root()), 3,
                               "SPACE=");
     EXPECT_EQ(run_planlight("register case --out refused3.json", root()).exit_code, 2);
@@ -192,6 +200,7 @@ TEST_F(CommandsTest, ScansOfFewerDevicesAndOfAGrayCodeAlone) {
     EXPECT_EQ(json::parse(whole.out)["devices"], "two cameras and the projector");
     EXPECT_EQ(json::parse(one.out)["devices"], "one camera and the projector");
     EXPECT_EQ(json::parse(two.out)["devices"], "two cameras");
+    EXPECT_TRUE(json::parse(one.out)["right"].is_null()) << "no camera, no counts";
     EXPECT_GT(json::parse(one.out)["points"].get<int>(), 10000);
     EXPECT_GT(json::parse(two.out)["points"].get<int>(), 10000);
     EXPECT_EQ(json::parse(whole.out)["movement"]["by"], "markers");
