@@ -22,7 +22,7 @@ Kernel::Ray_3 to_cgal(const Ray& ray) {
 }
 
 void check(const TriangleMesh& mesh) {
-    const char* remedy = "make the skin surface again with `planlight prepare`";
+    const char* remedy = "Make the skin surface again with `planlight prepare`.";
     if (mesh.triangles.empty()) throw InputError("", "the skin mesh has no triangles", remedy);
     for (std::size_t i = 0; i < mesh.vertices_in_ct.size(); ++i)
         if (!mesh.vertices_in_ct[i].allFinite())

@@ -79,7 +79,8 @@ Language language_of(const std::string& code) {
     std::string there;
     for (const std::string& known : language_codes()) there += (there.empty() ? "" : ", ") + known;
     throw InputError({}, "there are no words in the language \"" + code + "\"",
-                     "Choose one of: " + there + "; or put " + own.string() + " there (see app/words/README.md).");
+                     "Choose one of: " + there + "; or put " + own.string() +
+                         " there (see app/words/README.md, below /usr/share/doc/planlight when installed).");
 }
 
 }  // namespace planlight

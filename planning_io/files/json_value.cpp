@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 constexpr int kMaxDepth = 32;
-constexpr const char* kCorrect = "Correct the file; its format stands in planning_io/FORMATS.md.";
+constexpr const char* kCorrect =
+    "Correct the file; its format stands in planning_io/FORMATS.md (below /usr/share/doc/planlight when installed).";
 
 template <std::size_t N>
 std::array<double, N> numbers(const JsonValue& value) {
@@ -74,7 +75,8 @@ void JsonValue::has_only(std::initializer_list<const char*> known) const {
         const auto nearest = nearest_word(name, {known.begin(), known.end()});
         refuse("has a name that means nothing here, \"" + name + "\"" +
                    (nearest ? "; is \"" + *nearest + "\" meant?" : std::string()),
-               "Correct the name (planning_io/FORMATS.md lists them); notes of your own may stand under \"notes\" or "
+               "Correct the name (planning_io/FORMATS.md, below /usr/share/doc/planlight when installed, lists them); "
+               "notes of your own may stand under \"notes\" or "
                "under names "
                "that begin with x_.");
     }
