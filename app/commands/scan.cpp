@@ -260,7 +260,6 @@ int run_scan(const ScanOptions& options) {
              {{"no_partner", scan.raw.no_partner},
               {"disagree", scan.raw.disagree},
               {"ragged", scan.raw.ragged},
-              {"ragged", scan.raw.ragged},
               {"outside_volume", scan.raw.outside_volume},
               {"jump", scan.clean.jump},
               {"grazing", scan.clean.grazing},
