@@ -16,8 +16,10 @@
 #include <memory>
 #include <string_view>
 
+#include "planning_io/files/header_text.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/project_archive.h"
+#include "planning_io/volume/volume_checks.h"
 
 namespace planlight {
 namespace {
@@ -27,6 +29,8 @@ using Entries = std::map<std::string, std::string>;
 using PlistOwner = std::unique_ptr<void, void (*)(plist_t)>;
 
 constexpr const char* kSaveAgain = "Open the project in InVesalius 3 and save it again.";
+constexpr std::uint64_t kAxial = 1;
+constexpr double kPerpendicular = 1e-3;
 
 [[noreturn]] void damaged(const fs::path& file, const std::string& problem) {
     throw DamagedFileError(file, problem, kSaveAgain);
@@ -87,13 +91,42 @@ std::array<double, 3> three_numbers(plist_t value, const char* key, const fs::pa
 }
 
 struct MatrixHeader {
-    std::string file_name, modality;
+    std::string file_name, modality, name;
     std::array<int, 3> size{};  ///< along x, y (rows), z
     std::array<double, 3> spacing_mm{};
 };
 
+/// Only slices of axial DICOM stand in the matrix with x to the left and rows to anterior. What comes from NIfTI stands
+/// half a turn from that, and says that it is coronal (InVesalius: imagedata_utils.img2memmap,
+/// control.CreateOtherProject); the slices of coronal and sagittal DICOM stand in the order of their files.
+void check_axial(plist_t main, const fs::path& file) {
+    plist_t orientation = value_of(main, "orientation", file), affine = plist_dict_get_item(main, "affine");
+    if (plist_get_node_type(orientation) != PLIST_UINT)
+        damaged(file, "\"orientation\" in its property list is not a number");
+    std::uint64_t along = 0;
+    plist_get_uint_val(orientation, &along);
+    const bool has_affine = affine && plist_get_node_type(affine) == PLIST_ARRAY && plist_array_get_size(affine) > 0;
+    if (along != kAxial || has_affine)
+        throw InputError(file,
+                         "was imported from NIfTI, or from sagittal or coronal slices: its axes are not those of "
+                         "axial slices",
+                         "Give the NIfTI file or the DICOM series itself.");
+}
+
+/// "CT" or "MR".
+std::string modality_of(plist_t main, const fs::path& file) {
+    const std::string modality = text_of(value_of(main, "modality", file), "modality", file);
+    if (modality == "CT") return modality;
+    if (modality.starts_with("MR")) return "MR";
+    throw InputError(file,
+                     "is of modality \"" + modality +
+                         "\", neither CT nor MR: a project made from pictures does not say which side is left",
+                     "Give the DICOM series itself.");
+}
+
 MatrixHeader read_header(const Entries& entries, const fs::path& file) {
     const PlistOwner main = parse_plist(entries, "main.plist", file);
+    check_axial(main.get(), file);
     plist_t matrix = value_of(main.get(), "matrix", file);
     MatrixHeader header;
     header.file_name = fs::path(text_of(value_of(matrix, "filename", file), "filename", file)).filename().string();
@@ -110,10 +143,9 @@ MatrixHeader read_header(const Entries& entries, const fs::path& file) {
         if (!(spacing > 0.01) || !(spacing < 50)) damaged(file, "the spacing of its matrix makes no sense");
         header.size[axis] = static_cast<int>(count);
     }
-    plist_t modality = plist_dict_get_item(main.get(), "modality");
-    header.modality =
-        modality && plist_get_node_type(modality) == PLIST_STRING ? text_of(modality, "modality", file) : "CT";
-    if (header.modality.starts_with("MR")) header.modality = "MR";
+    header.modality = modality_of(main.get(), file);
+    plist_t name = plist_dict_get_item(main.get(), "name");
+    if (name && plist_get_node_type(name) == PLIST_STRING) header.name = text_of(name, "name", file);
     return header;
 }
 
@@ -147,20 +179,23 @@ Volume read_invesalius_volume(const fs::path& file) {
     Entries entries =
         read_tar_entries(file, [](const std::string& name) { return is_plist(name) || name == kUsualName; });
     const MatrixHeader header = read_header(entries, file);
+    const auto [nx, ny, nz] = header.size;
+    const auto [sx, sy, sz] = header.spacing_mm;
+    Volume volume;
+    volume.size = header.size;
+    volume.ct_from_voxel = Eigen::Translation3d(0, -sy * (ny - 1), 0) * Eigen::Scaling(sx, sy, sz);
+    check_grid(volume, file, kPerpendicular);
+    check_not_defaced(file, header.name);
     if (header.file_name != kUsualName)
         entries.merge(read_tar_entries(file, [&](const std::string& name) { return name == header.file_name; }));
     const auto matrix = entries.find(header.file_name);
     if (matrix == entries.end()) damaged(file, "holds no matrix");
-    const auto [nx, ny, nz] = header.size;
     const auto row = static_cast<std::size_t>(nx), rows = static_cast<std::size_t>(ny),
                slices = static_cast<std::size_t>(nz);
     if (matrix->second.size() != row * rows * slices * sizeof(std::int16_t))
         damaged(file, "its matrix does not have the size its shape says");
 
-    Volume volume;
-    volume.size = header.size;
     volume.modality = header.modality;
-    volume.is_hu = header.modality == "CT";
     volume.source = "InVesalius project " + file.filename().string();
     volume.values.resize(row * rows * slices);
     for (std::size_t k = 0; k < slices; ++k)
@@ -173,8 +208,7 @@ Volume read_invesalius_volume(const fs::path& file) {
                 to[i] = static_cast<std::int16_t>(static_cast<std::uint16_t>(low | (high << 8)));
             }
         }
-    const auto [sx, sy, sz] = header.spacing_mm;
-    volume.ct_from_voxel = Eigen::Translation3d(0, -sy * (ny - 1), 0) * Eigen::Scaling(sx, sy, sz);
+    volume.is_hu = volume.modality == "CT" && has_air_in_hu(volume);
     return volume;
 }
 

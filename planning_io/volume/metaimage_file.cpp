@@ -26,8 +26,13 @@ std::string one_of(const TextHeader& header, std::initializer_list<const char*> 
     return "";
 }
 
+/// As MetaIO writes and reads them.
 bool is_true(const TextHeader& header, const char* name) {
-    return lower_case(header.get(name, "False")).starts_with("t");
+    const std::string word = lower_case(header.get(name, "false"));
+    if (word == "true" || word == "t" || word == "1") return true;
+    if (word == "false" || word == "f" || word == "0") return false;
+    throw DamagedFileError(header.file, fmt::format("says \"{} = {}\", neither True nor False", name, word),
+                           kSaveAgain);
 }
 
 VoxelType voxel_type(const TextHeader& header) {
@@ -116,6 +121,11 @@ Volume parse_metaimage(const fs::path& file) {
     check_grid(volume, file, kPerpendicular);
     check_not_defaced(file, header.get("comment", ""));
 
+    const std::string modality = header.get("modality", "");
+    for (const char* other : {"MET_MOD_NM", "MET_MOD_US", "MET_MOD_PET"})
+        if (modality == other)
+            throw InputError(file, "is of modality " + modality + ", neither CT nor MR", "Give a CT or MR volume.");
+
     const std::string data = header.at("elementdatafile");
     const bool local = data == "LOCAL" || data == "Local" || data == "local";
     const Packing packing = is_true(header, "compresseddata") ? Packing::deflate : Packing::none;
@@ -128,7 +138,7 @@ Volume parse_metaimage(const fs::path& file) {
         is_true(header, header.has("binarydatabyteordermsb") ? "binarydatabyteordermsb" : "elementbyteordermsb");
     volume.values = read_voxels(source, voxel_type(header), big, volume.index(0, 0, volume.size[2]));
     volume.source = "MetaImage file " + file.filename().string();
-    if (const std::string modality = header.get("modality", ""); modality == "MET_MOD_CT" || modality == "MET_MOD_MR") {
+    if (modality == "MET_MOD_CT" || modality == "MET_MOD_MR") {
         volume.modality = modality.substr(8);
         volume.is_hu = volume.modality == "CT" && has_air_in_hu(volume);
     }

@@ -94,6 +94,20 @@ Eigen::Affine3d ras_from_voxel(const Header& header, const std::array<int, 3>& s
     return affine;
 }
 
+/// The programs that made the volume: the first words of the command lines that follow its voxels, among other tags.
+std::string programs_in(const std::string& tags) {
+    std::string programs;
+    const auto is_text = [](char c) { return c >= ' ' && c <= '~'; };
+    for (std::size_t at = 0; at < tags.size();) {
+        std::size_t end = at;
+        while (end < tags.size() && is_text(tags[end])) ++end;
+        const std::string command = tags.substr(at, std::min(end, tags.find(' ', at)) - at);
+        if (end > at) programs += command.substr(command.find_last_of('/') + 1) + " ";
+        at = end + 1;
+    }
+    return programs;
+}
+
 }  // namespace
 
 Volume parse_mgh(const fs::path& file) {
@@ -103,7 +117,10 @@ Volume parse_mgh(const fs::path& file) {
     volume.size = size_of(header);
     volume.ct_from_voxel = Eigen::Scaling(-1.0, -1.0, 1.0) * ras_from_voxel(header, volume.size);  // RAS to LPS
     check_grid(volume, file, kPerpendicular);
-    volume.values = read_voxels(source, voxel_type(header), true, volume.index(0, 0, volume.size[2]), kMostTags);
+    check_not_defaced(file, "");
+    std::string tags;
+    volume.values = read_voxels(source, voxel_type(header), true, volume.index(0, 0, volume.size[2]), kMostTags, &tags);
+    check_not_defaced(file, programs_in(tags));
     volume.source = "FreeSurfer file " + file.filename().string();
     return volume;
 }

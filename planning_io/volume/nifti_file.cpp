@@ -181,6 +181,16 @@ void check_spacing(const Header& header, const Affine3d& affine) {
     }
 }
 
+/// nifti1.h: 2 to 24 are statistics, 1002 to 1010 labels, matrices, vectors, points and triangles.
+void check_intent(const Header& header) {
+    const auto intent = header.at<std::int16_t>(68);
+    if ((intent >= 2 && intent <= 24) || (intent >= 1002 && intent <= 1010))
+        throw InputError(
+            header.file(),
+            fmt::format("holds labels, statistics or vectors (intent code {}), not what a scanner measured", intent),
+            "Give the volume that they were made from.");
+}
+
 std::array<int, 3> size_of(const Header& header) {
     const int axes = header.at<std::int16_t>(40);
     std::array<int, 3> size{};
@@ -211,6 +221,7 @@ Volume parse_nifti(const fs::path& file) {
     volume.ct_from_voxel = Eigen::Scaling(-mm, -mm, mm) * frame;  // RAS to LPS
     check_grid(volume, file, kPerpendicular);
     check_not_defaced(file, header.text(148, 80));
+    check_intent(header);
 
     const float slope = header.at<float>(112), offset = header.at<float>(116), begin = header.at<float>(108);
     if (!std::isfinite(slope) || (slope != 0 && !std::isfinite(offset)))

@@ -100,6 +100,17 @@ void check_units(const TextHeader& header) {
         if (word != "mm") throw InputError(header.file, "has lengths in \"" + word + "\"", "Save it in millimetres.");
 }
 
+/// Three axes of space, of grey values that a scanner measured.
+void check_kinds(const TextHeader& header) {
+    std::istringstream words(lower_case(header.get("kinds", "")));
+    for (std::string word; words >> word;)
+        if (word != "domain" && word != "space" && word != "none" && word != "???")
+            throw InputError(header.file, "has an axis of kind \"" + word + "\", which is none of space", kSaveAgain);
+    if (header.has("segment0_id"))  // "Segment0_ID:=..."
+        throw InputError(header.file, "is a segmentation of 3D Slicer, not what a scanner measured",
+                         "Give the volume that it was drawn on.");
+}
+
 Packing packing_of(const TextHeader& header) {
     const std::string encoding = lower_case(header.at("encoding"));
     if (encoding == "raw") return Packing::none;
@@ -127,6 +138,7 @@ Volume parse_nrrd(const fs::path& file) {
         throw InputError(file, "has " + header.at("dimension") + " axes, not 3", kSaveAgain);
     const Vector3d signs = lps_signs(header);
     check_units(header);
+    check_kinds(header);
 
     Volume volume;
     const auto sizes = header.numbers("sizes", 3);

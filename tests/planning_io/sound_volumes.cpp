@@ -335,6 +335,17 @@ void add_formats(std::vector<VolumeCase>& list) {
         h.insert(h.find("Offset"), "AnatomicalOrientation = LAI\n");
         return h + zlibbed(int16_bytes(left_handed));
     }));
+    for (const char* yes : {"True", "1"})
+        list.push_back(file(fmt::format("MetaImage, big endian (BinaryDataByteOrderMSB = {})", yes), "head.mha", [=] {
+            std::string h = metaimage_header(oblique);
+            h.replace(h.find("MSB = False"), 11, fmt::format("MSB = {}", yes));
+            return h + int16_bytes(oblique, true);
+        }));
+    list.push_back(file("FreeSurfer, oblique, a face told of in the name of a folder", "head.mgh", [=] {
+        return mgh_bytes(oblique, std::string(20, '\0') + "mri_convert /defaced/a.mgz head.mgh");
+    }));
+    list.push_back(
+        file("FreeSurfer, gzip, left-handed axes", "head.mgz", [=] { return gzipped(mgh_bytes(left_handed)); }));
     list.push_back({"MetaImage, header and data file apart", "",
                     [=](const fs::path& folder) {
                         std::string h = metaimage_header(grid);

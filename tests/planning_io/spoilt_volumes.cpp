@@ -67,6 +67,26 @@ VolumeCase text(const std::string& format, const std::string& name, const std::s
     });
 }
 
+VolumeCase project(const std::string& name, const std::string& says, const std::string& from, const std::string& to,
+                   const Grid& grid = {}) {
+    return {"InVesalius: " + name,
+            says,
+            [=](const fs::path& folder) {
+                std::string plist = invesalius_plist(grid);
+                plist.replace(plist.find(from), from.size(), to);
+                write_invesalius_project(folder / "head.inv3", grid, plist);
+                return folder / "head.inv3";
+            },
+            "",
+            true,
+            "CT"};
+}
+
+/// A tag of FreeSurfer that holds a command line (3).
+std::string command_tag(const std::string& line) {
+    return std::string("\0\0\0\3\0\0\0\0\0\0\0", 11) + static_cast<char>(line.size()) + line;
+}
+
 void put_z(DicomObject& o, double z) {
     o.decimals(kPosition, {-94.5, -97, z});
 }
@@ -172,6 +192,15 @@ void add_slices(std::vector<VolumeCase>& list) {
         slices("a negative rescale slope", "scales its values", [](DicomObject& o) { o.decimals(0x00281053, {-1}); }));
     list.push_back(slice("a rescale slope that is not a number", "scales its values",
                          [](DicomObject& o) { o.text(0x00281053, "DS", "one"); }));
+    list.push_back(slices("stored as CT, and of another modality", "is stored as CT",
+                          [](DicomObject& o) { o.text(0x00080060, "CS", "PT"); }));
+    list.push_back(slice("one slice of another modality", "is stored as CT",
+                         [](DicomObject& o) { o.text(0x00080060, "CS", "MR"); }));
+    list.push_back(slices("values by a table (Modality LUT)", "Modality LUT", [](DicomObject& o) {
+        DicomObject table;
+        table.text(0x00283003, "LO", "HU");
+        o.erase(0x00281052), o.erase(0x00281053), o.items(0x00283000, {table});
+    }));
     list.push_back(slice("rescale in some slices only", "two meanings",
                          [](DicomObject& o) { o.erase(0x00281052), o.erase(0x00281053); }));
     list.push_back(slices("colour pictures", "colour",
@@ -319,6 +348,38 @@ void add_formats(std::vector<VolumeCase>& list) {
                          [](std::string& h) { h.replace(148, 9, "pydefaced"); }));
     list.push_back(nifti("a description that says that its face is another's (AFNI's reface)", "taken away",
                          [](std::string& h) { h.replace(148, 8, "reface_r"); }));
+    for (const int intent : {3, 1002, 1007})
+        list.push_back(nifti(fmt::format("labels, statistics or vectors (intent {})", intent),
+                             "not what a scanner measured",
+                             [=](std::string& h) { put(h, 68, static_cast<std::int16_t>(intent)); }));
+    list.push_back(text("NRRD", "colours along its first axis", "none of space", "kinds: domain", "kinds: RGB-color"));
+    list.push_back(text("NRRD", "a segmentation of 3D Slicer", "is a segmentation", "encoding: raw",
+                        "encoding: raw\nSegment0_ID:=Segment_1"));
+    list.push_back(text("MetaImage", "of a PET", "neither CT nor MR", "ObjectType = Image",
+                        "ObjectType = Image\nModality = MET_MOD_PET"));
+    list.push_back(text("MetaImage", "a word that is neither true nor false", "neither True nor False", "MSB = False",
+                        "MSB = Unknown"));
+    list.push_back(file("FreeSurfer: a name that says it was defaced", "taken away", "T1_defaced.mgh",
+                        [] { return mgh_bytes({}); }));
+    list.push_back(file("FreeSurfer: made by a program that takes faces away", "taken away", "T1.mgz", [] {
+        return gzipped(mgh_bytes({}, std::string(20, '\0') + command_tag("mri_convert a.dcm T1.mgz") +
+                                         command_tag("/opt/freesurfer/bin/mri_deface T1.mgz b.gca c.gca T1.mgz")));
+    }));
+    const std::string axial = "<integer>1</integer>", no_affine = "<string></string>",
+                      affine =
+                          "<array><array><real>1</real><real>0</real><real>0</real><real>-90</real></array></array>";
+    list.push_back(project("imported from NIfTI, which it calls coronal", "not those of axial slices", axial,
+                           "<integer>2</integer>"));
+    list.push_back(
+        project("imported from sagittal slices", "not those of axial slices", axial, "<integer>3</integer>"));
+    list.push_back(project("axial, with the affine of a NIfTI file", "not those of axial slices", no_affine, affine));
+    list.push_back(
+        project("an orientation that is not said", "no \"orientation\"", "orientation</key>", "direction</key>"));
+    list.push_back(project("made from pictures", "which side is left", ">CT<", ">UNKNOWN<"));
+    list.push_back(project("named after a defaced file", "taken away", "Phantom", "sub-01_defaced"));
+    Grid six;
+    six.size[2] = 6;
+    list.push_back(project("6 slices", "fewer than 16", "<real>4</real>", "<real>16</real>", six));
     list.push_back(text("NRRD", "no space", "does not say its frame", "space: left-posterior-superior\n", ""));
     list.push_back(
         text("NRRD", "a space of the scanner", "not that of a patient", "left-posterior-superior", "scanner-xyz"));

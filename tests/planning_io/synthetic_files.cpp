@@ -98,18 +98,46 @@ std::string zlibbed(const std::string& plain) {
     return packed(plain, 15);
 }
 
-void write_invesalius_project(const std::filesystem::path& file) {
-    const Grid grid;
-    const std::string plist = fmt::format(
+std::string mgh_bytes(const Grid& grid, const std::string& tags) {
+    std::string bytes(284, '\0');
+    const auto put_big = [&](std::size_t at, auto value) {
+        put(bytes, at, value);
+        std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                     bytes.begin() + static_cast<std::ptrdiff_t>(at + sizeof value));
+    };
+    put_big(0, std::int32_t{1});
+    for (std::size_t axis = 0; axis < 3; ++axis) put_big(4 + 4 * axis, std::int32_t{grid.size[axis]});
+    put_big(16, std::int32_t{1});
+    put_big(20, std::int32_t{4});  // int16
+    put_big(28, std::int16_t{1});  // it says its axes
+    const Eigen::Affine3d ras = Eigen::Scaling(-1.0, -1.0, 1.0) * grid.ct_from_voxel;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto at = static_cast<std::size_t>(axis);
+        put_big(30 + 4 * at, static_cast<float>(ras.linear().col(axis).norm()));
+        for (int row = 0; row < 3; ++row)
+            put_big(42 + 12 * at + 4 * static_cast<std::size_t>(row),
+                    static_cast<float>(ras.linear().col(axis).normalized()[row]));
+        put_big(78 + 4 * at, static_cast<float>((ras * Eigen::Vector3d(grid.size[0] / 2.0, grid.size[1] / 2.0,
+                                                                       grid.size[2] / 2.0))[axis]));
+    }
+    return bytes + int16_bytes(grid, true) + tags;
+}
+
+std::string invesalius_plist(const Grid& grid) {
+    return fmt::format(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE plist PUBLIC \"-//Apple//DTD PLIST 1.0//EN\" "
         "\"http://www.apple.com/DTDs/PropertyList-1.0.dtd\">\n"
         "<plist "
-        "version=\"1.0\"><dict><key>modality</key><string>CT</string><key>spacing</key><array><real>3</real><real>3</"
-        "real><real>4</real></array>"
+        "version=\"1.0\"><dict><key>modality</key><string>CT</string><key>name</key><string>Phantom</string>"
+        "<key>orientation</key><integer>1</integer><key>affine</key><string></string>"
+        "<key>spacing</key><array><real>3</real><real>3</real><real>4</real></array>"
         "<key>matrix</key><dict><key>dtype</key><string>int16</string><key>filename</key><string>matrix.dat</"
         "string><key>shape</key><array>"
         "<integer>{}</integer><integer>{}</integer><integer>{}</integer></array></dict></dict></plist>\n",
         grid.size[2], grid.size[1], grid.size[0]);
+}
+
+void write_invesalius_project(const std::filesystem::path& file, const Grid& grid, const std::string& plist) {
     archive* tar = archive_write_new();
     archive_write_set_format_ustar(tar);
     archive_write_add_filter_gzip(tar);

@@ -27,7 +27,13 @@ std::string int16_bytes(const Grid& grid, bool big_endian = false);
 std::string gzipped(const std::string& plain);
 std::string zlibbed(const std::string& plain);
 
+/// A FreeSurfer volume of int16 voxels; `tags` follow them.
+std::string mgh_bytes(const Grid& grid, const std::string& tags = {});
+
+/// The main.plist of a project imported from axial DICOM, for a test to spoil.
+std::string invesalius_plist(const Grid& grid);
 /// A small InVesalius project of the phantom: gzip tar of main.plist and matrix.dat.
-void write_invesalius_project(const std::filesystem::path& file);
+void write_invesalius_project(const std::filesystem::path& file, const Grid& grid = {},
+                              const std::string& plist = invesalius_plist({}));
 
 }  // namespace planlight::test
