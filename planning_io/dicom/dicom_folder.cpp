@@ -126,6 +126,8 @@ bool read_header(DicomFile& file, bool& is_directory) {
     file.date = iso_date(text_at(meta, DC::SeriesDate));
     if (file.date.empty()) file.date = iso_date(text_at(meta, DC::StudyDate));
     file.localizer = text_at(meta, DC::ImageType).find("LOCALIZER") != std::string::npos;
+    file.was_lossy = text_at(meta, DC::LossyImageCompression) == "01";
+    file.has_value_table = meta->Get(0, DC::ModalityLUTSequence).IsValid();
     const vtkDICOMValue &padding = meta->Get(0, DC::PixelPaddingValue),
                         &limit = meta->Get(0, DC::PixelPaddingRangeLimit);
     file.has_padding = padding.IsValid();

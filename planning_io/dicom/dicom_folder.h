@@ -15,7 +15,9 @@ struct DicomFile {
     std::string series_uid, modality, description, number, storage_class, rescale_type;
     std::string date;  ///< of the series, else of the study: ISO 8601; empty when not said
     bool localizer = false;
-    bool damaged = false;  ///< the header ends too early or makes no sense
+    bool damaged = false;          ///< the header ends too early or makes no sense
+    bool was_lossy = false;        ///< its pictures lost something once, however they are stored now
+    bool has_value_table = false;  ///< a Modality LUT in place of slope and intercept
     bool has_padding = false;
     int padding = 0, padding_limit = 0;  ///< stored values that stand for "nothing was measured", from - to
     std::vector<DicomSlice> slices;      ///< one, or one a frame; empty for an object without pixels

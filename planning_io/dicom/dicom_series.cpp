@@ -112,11 +112,11 @@ void note_geometry(const DicomSeries& series, Volume& volume) {
         volume.notes.push_back(
             fmt::format("the gantry was tilted by {:.1f} degrees: the slices stay where they were, sheared",
                         tilt * 180 / std::numbers::pi));
-    for (const auto& slice : series.all_slices())
-        if (transfer_syntax_of(slice.transfer_syntax) == TransferSyntax::lossy) {
-            volume.notes.push_back("the pictures were compressed with loss");
-            return;
-        }
+    const auto slices = series.all_slices();
+    if (std::any_of(series.files.begin(), series.files.end(), [](const DicomFile& f) { return f.was_lossy; }) ||
+        std::any_of(slices.begin(), slices.end(),
+                    [](const DicomSlice& s) { return transfer_syntax_of(s.transfer_syntax) == TransferSyntax::lossy; }))
+        volume.notes.push_back("the pictures were compressed with loss");
 }
 
 /// Slices that overlap by more than half are means over what lies around them: their skin is blurred along the stack.
@@ -131,7 +131,7 @@ void note_thickness(const std::vector<DicomSlice>& slices, Volume& volume) {
 }
 
 /// Slices that lie off their places on an even grid: laid onto one of the smallest step, linear between the cuts where
-/// they really are. A few hundredths of a step are left as they are, and said.
+/// they really are. Those that are even enough without that are left as they are, and it is said.
 void lay_on_even_grid(Volume& volume, const std::vector<DicomSlice>& slices) {
     const double off_mm = unevenness_of(slices);
     if (off_mm < kEven_mm) return;
@@ -139,7 +139,7 @@ void lay_on_even_grid(Volume& volume, const std::vector<DicomSlice>& slices) {
     std::vector<double> steps;
     for (std::size_t i = 1; i < places.size(); ++i) steps.push_back(std::abs(places[i] - places[i - 1]));
     const auto [least, most] = std::minmax_element(steps.begin(), steps.end());
-    if (*most - *least < 0.05 * *most) {
+    if (is_even(slices)) {
         volume.notes.push_back(fmt::format("its slices lie up to {:.2f} mm off an even spacing of {:.2f} mm", off_mm,
                                            std::abs(places.back()) / static_cast<double>(steps.size())));
         return;
@@ -194,6 +194,21 @@ std::string words_of_class(const DicomFile& file) {
     return fmt::format("of modality \"{}\", storage class {}", file.modality, file.storage_class);
 }
 
+/// "CT" or "MR" as the pictures are stored; what they say besides must be the same.
+std::string modality_of(const DicomSeries& series) {
+    const auto stored_as = [](const DicomFile& file) {
+        return file.storage_class.starts_with("1.2.840.10008.5.1.4.1.1.4") ? "MR" : "CT";
+    };
+    const std::string modality = stored_as(series.files.front());
+    for (const DicomFile& file : series.files)
+        if (stored_as(file) != modality || (!file.modality.empty() && file.modality != modality))
+            throw InputError(file.path,
+                             fmt::format("is stored as {} and says that it is of modality \"{}\", in a series of {}",
+                                         stored_as(file), file.modality, modality),
+                             kCopyAgain);
+    return modality;
+}
+
 /// The reader's own pictures, mostly of 16 bits, and ours beside them.
 std::uint64_t memory_to_read(const DicomSeries& series) {
     std::uint64_t pixels = 0;
@@ -237,6 +252,11 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted, Slice
     if (!series.is_volume())
         throw InputError(path, "is no CT or MR volume but " + words_of_class(series.files.front()),
                          "Give a series of CT or MR image objects.");
+    const std::string modality = modality_of(series);
+    for (const auto& file : series.files)
+        if (file.has_value_table)
+            throw InputError(file.path, "says its values by a table (Modality LUT), which is not read",
+                             "Export the series with rescale slope and intercept.");
     if (const auto fault = fault_of(series.all_slices(), gaps)) {
         if (!found.unreadable.empty())  // perhaps what is missing
             throw DamagedFileError(found.unreadable.front(),
@@ -267,7 +287,7 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted, Slice
     Volume volume;
     volume.size = {slices[0].columns, slices[0].rows, static_cast<int>(slices.size())};
     volume.ct_from_voxel = ct_from_voxel_of(slices);
-    volume.modality = series.modality;
+    volume.modality = modality;
     volume.frame_of_reference_uid = slices[0].frame_of_reference_uid;
     volume.source = fmt::format("DICOM series {}", series.uid);
     volume.series_description = series.description;

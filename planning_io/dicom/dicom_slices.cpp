@@ -145,12 +145,11 @@ std::optional<DicomRefusal> fault_of_stack(const std::vector<DicomSlice>& slices
             return DicomRefusal{fmt::format("the gap {} is {:.1f} mm", between, gaps[i]),
                                 "Give a series of thinner slices."};
     }
-    if (const double off = unevenness_of(slices);
-        allowed == SliceGaps::refused && off > std::max(kEvenPlace_mm, kEvenShare * usual))
+    if (allowed == SliceGaps::refused && !is_even(slices))
         return DicomRefusal{
             fmt::format(
                 "the slices are not evenly spaced: steps of {:.3f} to {:.3f} mm, one lies {:.2f} mm off an even stack",
-                sorted.front(), sorted.back(), off),
+                sorted.front(), sorted.back(), unevenness_of(slices)),
             "Lay them onto an even grid between the cuts where they lie (`planlight prepare --resample`), or "
             "reconstruct the "
             "series with one spacing."};
@@ -203,6 +202,15 @@ double unevenness_of(const std::vector<DicomSlice>& slices) {
         worst = std::max(worst, std::abs(places[i] - places.back() * static_cast<double>(i) /
                                                          static_cast<double>(places.size() - 1)));
     return worst;
+}
+
+bool is_even(const std::vector<DicomSlice>& slices) {
+    const std::vector<double> places = places_along_stack(slices);
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < places.size(); ++i) steps.push_back(std::abs(places[i] - places[i - 1]));
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    return unevenness_of(slices) <= std::max(kEvenPlace_mm, kEvenShare * *middle);
 }
 
 Eigen::Affine3d ct_from_voxel_of(const std::vector<DicomSlice>& slices) {

@@ -50,6 +50,9 @@ std::vector<double> places_along_stack(const std::vector<DicomSlice>& slices);
 /// The furthest that a slice lies from its place on the even grid of `ct_from_voxel_of`, mm.
 double unevenness_of(const std::vector<DicomSlice>& slices);
 
+/// Whether each slice lies within 0.05 mm, or 2 % of the step, of its place on that grid.
+bool is_even(const std::vector<DicomSlice>& slices);
+
 /// The affine of slices in this order (they have no fault): i along a row, j along a column, k from slice to slice.
 Eigen::Affine3d ct_from_voxel_of(const std::vector<DicomSlice>& slices);
 
