@@ -147,11 +147,12 @@ void ByteSource::skip(std::uint64_t bytes) {
         read(rest.data(), static_cast<std::size_t>(std::min<std::uint64_t>(bytes, rest.size())));
 }
 
-void ByteSource::finish(std::uint64_t allowed) {
-    std::vector<unsigned char> rest(kBlock);
+void ByteSource::finish(std::uint64_t allowed, std::string* rest) {
+    std::vector<unsigned char> block(kBlock);
     std::uint64_t more = 0;
-    while (const std::size_t got = some(rest.data(), rest.size())) {
+    while (const std::size_t got = some(block.data(), block.size())) {
         more += got;
+        if (rest) rest->append(reinterpret_cast<const char*>(block.data()), got);
         if (more > allowed) throw DamagedFileError(file_, "holds more voxels than its header says", kCopyAgain);
     }
 }
@@ -177,7 +178,7 @@ std::size_t bytes_of(VoxelType type) {
 }
 
 std::vector<float> read_voxels(ByteSource& source, VoxelType type, bool big_endian, std::size_t count,
-                               std::uint64_t allowed) {
+                               std::uint64_t allowed, std::string* rest) {
     const std::size_t each = bytes_of(type);
     if (count > source.upper_bound() / each)
         throw DamagedFileError(
@@ -193,7 +194,7 @@ std::vector<float> read_voxels(ByteSource& source, VoxelType type, bool big_endi
         source.read(block.data(), now * each);
         append(type, block, now, swap, values);
     }
-    source.finish(allowed);
+    source.finish(allowed, rest);
     const auto odd = std::count_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
     if (odd > 0)
         throw DamagedFileError(source.file(), fmt::format("holds {} voxels that are not numbers", odd),

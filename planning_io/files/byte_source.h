@@ -23,8 +23,8 @@ public:
     void read(void* to, std::size_t bytes);
     void skip(std::uint64_t bytes);
     /// To be called after the last byte: a packed stream proves its checksum, and more than `allowed` further bytes are
-    /// damage.
-    void finish(std::uint64_t allowed);
+    /// damage. They are put into `rest`, if it is given.
+    void finish(std::uint64_t allowed, std::string* rest = nullptr);
     /// The most bytes that can still come out of the file.
     std::uint64_t upper_bound() const;
     const std::filesystem::path& file() const { return file_; }
@@ -42,9 +42,9 @@ private:
 enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 std::size_t bytes_of(VoxelType type);
 
-/// `count` voxels as floats, to the end of the source; `allowed` bytes may follow. Throws DamagedFileError for too few
-/// or too many, or for a voxel that is not a number.
+/// `count` voxels as floats, to the end of the source; `allowed` bytes may follow, and are put into `rest`, if it is
+/// given. Throws DamagedFileError for too few or too many, or for a voxel that is not a number.
 std::vector<float> read_voxels(ByteSource& source, VoxelType type, bool big_endian, std::size_t count,
-                               std::uint64_t allowed = 4096);
+                               std::uint64_t allowed = 4096, std::string* rest = nullptr);
 
 }  // namespace planlight

@@ -29,7 +29,7 @@ constexpr rlim_t kMaxAnswerBytes = rlim_t{8} << 30;
 constexpr rlim_t kMaxOpenFiles = 4096;
 constexpr const char* kCopyAgain = "Copy or export it again from where it came from.";
 
-enum class Outcome : std::uint32_t { parsed, refused, damaged };
+constexpr ExitCode kParsed = ExitCode::done;
 
 void limit_this_process(const ChildLimits& limits) {
     rlim_t already = 0;  // of address space that the parent brought along
@@ -38,7 +38,9 @@ void limit_this_process(const ChildLimits& limits) {
         if (std::fscanf(status, "%lu", &pages) == 1) already = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
         std::fclose(status);
     }
-    const auto limit = [](auto what, rlim_t value) {
+    const auto limit = [](auto what, rlim_t value) {  // never more than the parent may have: root could take it
+        rlimit of_parent{};
+        if (getrlimit(what, &of_parent) == 0) value = std::min(value, of_parent.rlim_max);
         const rlimit both{value, value};
         setrlimit(what, &both);
     };
@@ -56,26 +58,26 @@ void limit_this_process(const ChildLimits& limits) {
 
 [[noreturn]] void be_the_child(Parcel& parcel, const fs::path& file, const ChildLimits& limits,
                                const std::function<void(Parcel&)>& parse) {
+    const std::uint64_t at_first = free_memory_bytes();  // without the limit that is set now
     limit_this_process(limits);
-    const std::uint64_t at_first = free_memory_bytes();
-    const auto fail = [&](Outcome outcome, const std::string& problem, const std::string& remedy) {
+    const auto fail = [&](ExitCode code, const std::string& problem, const std::string& remedy) {
         parcel.empty();
-        parcel.put(outcome);
+        parcel.put(code);
         parcel.put(problem);
         parcel.put(remedy);
     };
     try {
-        parcel.put(Outcome::parsed);
+        parcel.put(kParsed);
         parse(parcel);
     } catch (const Error& e) {
-        fail(e.exit_code == ExitCode::file_damaged ? Outcome::damaged : Outcome::refused, e.what(), e.remedy);
+        fail(e.exit_code, e.what(), e.remedy);
     } catch (const std::bad_alloc&) {
-        fail(Outcome::refused,
+        fail(at_first < kMaxMemoryBytes ? ExitCode::disk : ExitCode::input_refused,
              fmt::format("{}: needs more memory to be read than the {} MiB that it may have", file.string(),
                          std::min<std::uint64_t>(kMaxMemoryBytes, at_first) >> 20),
              limits.when_too_large);
     } catch (const std::exception& e) {
-        fail(Outcome::damaged, file.string() + ": cannot be read (" + e.what() + ")", kCopyAgain);
+        fail(ExitCode::file_damaged, file.string() + ": cannot be read (" + e.what() + ")", kCopyAgain);
     }
     _exit(0);
 }
@@ -123,7 +125,7 @@ void Parcel::write_all(const void* from, std::size_t bytes) {
     while (bytes > 0) {
         const ssize_t moved = write(fd_, at, bytes);
         if (moved < 0 && errno == EINTR) continue;
-        if (moved <= 0) throw std::runtime_error("there is no room for what was read");
+        if (moved <= 0) throw std::bad_alloc();  // an unnamed file in memory
         at += moved, bytes -= static_cast<std::size_t>(moved);
     }
 }
@@ -151,11 +153,12 @@ Parcel parse_in_child(const fs::path& file, const ChildLimits& limits, const std
     }
     check_end(status, used, file, limits);
     parcel.begin_reading();
-    if (parcel.left() < sizeof(Outcome)) throw DamagedFileError(file, "could not be read to its end", kCopyAgain);
-    const auto outcome = parcel.get<Outcome>();
-    if (outcome == Outcome::parsed) return parcel;
+    if (parcel.left() < sizeof(ExitCode)) throw DamagedFileError(file, "could not be read to its end", kCopyAgain);
+    const auto code = parcel.get<ExitCode>();
+    if (code == kParsed) return parcel;
     const std::string problem = parcel.get_text(), remedy = parcel.get_text();
-    if (outcome == Outcome::refused) throw InputError({}, problem, remedy);
+    if (code == ExitCode::input_refused) throw InputError({}, problem, remedy);
+    if (code != ExitCode::file_damaged) throw Error(code, problem, remedy);
     const auto colon = problem.find(": ");  // the sentence begins with the file at fault
     if (colon == std::string::npos) throw DamagedFileError(file, problem, remedy);
     throw DamagedFileError(problem.substr(0, colon), problem.substr(colon + 2), remedy);

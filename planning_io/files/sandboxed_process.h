@@ -64,7 +64,7 @@ private:
         read_all(list.data(), count * sizeof(typename List::value_type));
         return list;
     }
-    void write_all(const void* from, std::size_t bytes);  ///< throws std::runtime_error when there is no room
+    void write_all(const void* from, std::size_t bytes);  ///< throws std::bad_alloc when there is no room
     void read_all(void* to, std::size_t bytes);
 
     int fd_ = -1;
@@ -86,8 +86,9 @@ struct ChildLimits {
 };
 
 /// Runs `parse` in a child process within `limits` and gives what it put into its parcel. An Error thrown there is
-/// thrown here again; more memory than there is for it is an InputError that says how much; a crash, an endless loop or
-/// any other exception a DamagedFileError (the first a ParserCrash): the child is lost, never the program.
+/// thrown here again, with its exit code; more memory than it may have is an InputError that says how much, and where
+/// the machine itself has less than that an Error of exit code 7; a crash, an endless loop or any other exception a
+/// DamagedFileError (the first a ParserCrash): the child is lost, never the program.
 Parcel parse_in_child(const std::filesystem::path& file, const ChildLimits& limits,
                       const std::function<void(Parcel&)>& parse);
 

@@ -3,9 +3,11 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <vector>
 
+#include "planning_io/files/memory_need.h"
 #include "planning_io/files/sandboxed_process.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/volume_in_child.h"
@@ -65,12 +67,20 @@ TEST(LimitedChild, ACrashAHangAndAGreedyParserCostTheChildOnly) {
         << "after a second of processor";
     EXPECT_LT(children_processor_s() - before_s, 2)
         << "the limit is 1 s of processor, whatever the clock on the wall says";
-    EXPECT_TRUE(says(refusal_of<InputError>([]() -> Volume {
-                         Volume v;
-                         v.values.resize(std::size_t{5} << 28);
-                         return v;
-                     }),
-                     "MiB that it may have"));
+    const bool has_enough = free_memory_bytes() > (std::uint64_t{5} << 30);  // for what a child may take at most
+    try {
+        volume_in_child("some/file.dcm", []() -> Volume {
+            Volume v;
+            v.values.resize(std::size_t{5} << 28);
+            return v;
+        });
+        ADD_FAILURE() << "took 5 GiB";
+    } catch (const Error& e) {
+        EXPECT_TRUE(says(e.what(), "MiB that it may have")) << e.what();
+        if (has_enough) {
+            EXPECT_EQ(e.exit_code, ExitCode::input_refused) << "the file is too large, whatever the machine has";
+        }
+    }
     EXPECT_TRUE(says(refusal_of<DamagedFileError>([]() -> Volume { _exit(0); }), "to its end"));
 }
 
@@ -82,6 +92,43 @@ TEST(LimitedChild, AnErrorOfTheParserComesThroughWithItsRemedy) {
         EXPECT_STREQ(e.what(), "a.dcm: has a gap");
         EXPECT_EQ(e.remedy, "Export it again.");
     }
+}
+
+TEST(LimitedChild, AnErrorKeepsItsExitCode) {
+    for (const ExitCode code : {ExitCode::disk, ExitCode::input_refused, ExitCode::file_damaged, ExitCode::our_fault})
+        try {
+            volume_in_child("a.nii", [=]() -> Volume { throw Error(code, "a.nii: is too much", "Do less."); });
+            FAIL();
+        } catch (const Error& e) {
+            EXPECT_EQ(e.exit_code, code);
+            EXPECT_STREQ(e.what(), "a.nii: is too much");
+            EXPECT_EQ(e.remedy, "Do less.");
+        }
+}
+
+/// Less memory than any file may take is the machine's lack, more than that the file's size.
+TEST(LimitedChild, WhereMemoryIsShortTheFileIsNotAtFault) {
+    const auto read_with_little = [] {
+        unsigned long pages = 0;
+        if (std::FILE* status = std::fopen("/proc/self/statm", "r"); status && std::fscanf(status, "%lu", &pages) == 1)
+            std::fclose(status);
+        const rlim_t most = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (rlim_t{300} << 20);
+        const rlimit both{most, most};
+        setrlimit(RLIMIT_AS, &both);
+        try {
+            volume_in_child("a.nii", []() -> Volume {
+                Volume v;
+                v.values.resize(std::size_t{100} << 20);  // 400 MiB
+                return v;
+            });
+        } catch (const Error& e) {
+            std::fprintf(stderr, "%s", e.what());
+            std::exit(static_cast<int>(e.exit_code));
+        }
+        std::exit(0);
+    };
+    EXPECT_EXIT(read_with_little(), ::testing::ExitedWithCode(static_cast<int>(ExitCode::disk)),
+                "needs more memory to be read than the .* MiB");
 }
 
 TEST(LimitedChild, AParcelGivesBackWhatWasPutAndNoMore) {
