@@ -52,7 +52,9 @@ Patient read_patient(const PlanOptions& options) {
         patient.risk_structures = std::move(prepared.plan.risk_structures);
     }
     if (!options.volume.empty()) {
-        const Volume volume = read_volume(options.volume, options.series_uid);
+        // Of a case the hash says whether it was laid onto an even grid.
+        const Volume volume =
+            read_volume(options.volume, options.series_uid, patient.known ? SliceGaps::resampled : SliceGaps::refused);
         const std::string hash = hash_of(volume);
         if (patient.known && patient.volume_hash != hash)
             throw InputError(options.volume,
@@ -176,8 +178,7 @@ void write(const PlanImport& read, const Patient& patient, const PlanOptions& op
         write_plan_vtp(plan, out);
     else if (name.ends_with(".dcm")) {
         const std::string frame = patient.known ? patient.frame_of_reference_uid : read.frame_of_reference_uid;
-        write_plan_rtstruct(
-            plan, {patient.code, options.accept_frame.empty() ? frame : options.accept_frame, iso_date_now()}, out);
+        write_plan_rtstruct(plan, {patient.code, frame.empty() ? options.accept_frame : frame, iso_date_now()}, out);
     } else
         throw InputError(out, "is of no kind that a plan is written as", "End its name in .mrk.json, .vtp or .dcm.");
 }

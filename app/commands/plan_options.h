@@ -16,7 +16,8 @@ inline PlanImportSettings plan_settings(const std::string& frame, const std::str
                                         const std::optional<std::string>& uid_of_ct) {
     PlanImportSettings settings;
     if (!frame.empty()) settings.space = space_named(frame);
-    settings.frame_of_reference_uid = accepted_uid.empty() ? uid_of_ct : std::optional(accepted_uid);
+    settings.frame_of_reference_uid = uid_of_ct;
+    settings.accepted_frame_uid = accepted_uid;
     return settings;
 }
 

@@ -16,12 +16,14 @@ struct PlanImportSettings {
     /// FrameOfReferenceUID of the CT, to which that of a DICOM plan must be equal; "" = the CT has none, so that no
     /// DICOM plan fits it; not given = not checked (and noted).
     std::optional<std::string> frame_of_reference_uid;
+    /// That a person says is the CT's as well; it is noted where it is used. "" = none.
+    std::string accepted_frame_uid = {};
 };
 
 /// A plan with what was assumed or left out on the way.
 struct PlanImport {
     Plan plan;
-    std::string frame_of_reference_uid;  ///< that the DICOM plans are in; empty when none says it
+    std::string frame_of_reference_uid;  ///< that the DICOM plans are in, the CT's where another is accepted; or empty
     std::vector<std::string> notes;      ///< what was left out or assumed, a sentence each, with the file's name
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -112,6 +113,10 @@ void append_trajectory(Plan& plan, const JsonValue& markup, const MarkupSpace& s
     t.entry_in_ct = point_in_ct(points[0].at("position"), space);
     t.target_in_ct = point_in_ct(points[1].at("position"), space);
     t.diameter_mm = settings_of(points[0]).length_mm("diameter_mm", kMaxDiameter_mm);
+    const double at_target_mm = settings_of(points[1]).length_mm("diameter_mm", kMaxDiameter_mm);
+    if (t.diameter_mm > 0 && at_target_mm > 0 && t.diameter_mm != at_target_mm)
+        points[1].refuse("describes another diameter_mm than the point before it");
+    t.diameter_mm = std::max(t.diameter_mm, at_target_mm);
     t.colour = colour_of(markup);
     if (!(t.length_mm() > 1e-3))
         markup.refuse("(\"" + t.name + "\") is a line of no length", "Place its entry and its target apart.");
@@ -179,6 +184,9 @@ void append_cut_plane(Plan& plan, const JsonValue& markup, const MarkupSpace& sp
     if (size.size() != 2 && size.size() != 3) size.refuse("must be three numbers");
     plane.width_mm = space.mm_per_unit * size[0].number(0, 1e7);
     plane.height_mm = space.mm_per_unit * size[1].number(0, 1e7);
+    if (!(std::min(plane.width_mm, plane.height_mm) > 1e-3))
+        size.refuse("is nothing along a side", "Give the plane a size in 3D Slicer.");
+    if (const auto points = markup.find("controlPoints")) count_points(*points, 0);
     if (const auto bounds = markup.find("planeBounds"); bounds && bounds->size() == 4)
         if (std::abs((*bounds)[0].number() + (*bounds)[1].number()) > 1e-3 ||
             std::abs((*bounds)[2].number() + (*bounds)[3].number()) > 1e-3)

@@ -130,11 +130,24 @@ void check_frame_of_reference(const std::string& uid_of_plan, const PlanImportSe
                               std::vector<std::string>& notes) {
     if (uid_of_plan.empty())
         throw InputError(file, "does not name its frame of reference", "Export it again, on the CT of the case.");
-    if (!settings.frame_of_reference_uid) {
+    if (settings.frame_of_reference_uid == uid_of_plan) return;
+    if (settings.accepted_frame_uid == uid_of_plan) {
+        const char* const but = !settings.frame_of_reference_uid           ? ""
+                                : settings.frame_of_reference_uid->empty() ? ", which names none"
+                                                                           : ", which names another";
+        notes.push_back(fmt::format("{}: nothing but --accept-frame says that its frame of reference is the volume's{}",
+                                    file.filename().string(), but));
+        return;
+    }
+    if (!settings.frame_of_reference_uid && settings.accepted_frame_uid.empty()) {
         notes.push_back(fmt::format("{}: its frame of reference {} was not checked against a CT",
                                     file.filename().string(), uid_of_plan));
         return;
     }
+    if (!settings.frame_of_reference_uid)
+        throw InputError(file,
+                         "is in the frame of reference " + uid_of_plan + ", not in " + settings.accepted_frame_uid,
+                         "Give --accept-frame the frame of reference that the file is in.");
     const std::string& of_ct = *settings.frame_of_reference_uid;
     if (of_ct.empty())
         throw InputError(file, "is in the frame of reference " + uid_of_plan + ", and the volume names none",
@@ -153,6 +166,8 @@ PlanImport read_rtstruct(const fs::path& file, const PlanImportSettings& setting
     const auto& rois = set.rois;
     read.frame_of_reference_uid = set.frame_of_reference_uid;
     check_frame_of_reference(read.frame_of_reference_uid, settings, file, read.notes);
+    if (settings.frame_of_reference_uid && !settings.frame_of_reference_uid->empty())
+        read.frame_of_reference_uid = *settings.frame_of_reference_uid;
     for (const RtRoi& roi : rois) {
         const RoiReader reader(roi, file);
         const std::string why_not = reader.nothing_to_draw();

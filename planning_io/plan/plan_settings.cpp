@@ -2,15 +2,47 @@
 
 #include <charconv>
 #include <sstream>
+#include <vector>
+
+#include "planning_io/files/nearest_word.h"
 
 namespace planlight {
 
+namespace {
+
+/// "a = b" as "a=b".
+std::string without_blanks_round_equals(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        const bool blank = c == ' ' || c == '\t';
+        if (blank && !result.empty() && result.back() == '=') continue;
+        if (c == '=')
+            while (!result.empty() && (result.back() == ' ' || result.back() == '\t')) result.pop_back();
+        result += c;
+    }
+    return result;
+}
+
+/// The word of ours that a word of a person's was meant to be: a mistyped one, or one without its unit.
+std::optional<std::string> word_meant(const std::string& word) {
+    const std::vector<std::string> known{"diameter_mm", "depth_mm", "axis"};
+    for (const std::string& ours : known)
+        if (word == ours) return std::nullopt;
+    for (const std::string& ours : known)
+        if (letters_apart(word, ours.substr(0, ours.find('_'))) == 0) return ours;
+    return nearest_word(word, known);
+}
+
+}  // namespace
+
 PlanSettings::PlanSettings(const std::string& description, Refuse refuse) : refuse_(std::move(refuse)) {
-    std::istringstream words(description);
+    std::istringstream words(without_blanks_round_equals(description));
     for (std::string word; words >> word;) {
         const auto equals = word.find('=');
         if (equals == std::string::npos) continue;
-        const auto [at, fresh] = values_.emplace(word.substr(0, equals), word.substr(equals + 1));
+        const std::string name = word.substr(0, equals);
+        if (const auto meant = word_meant(name)) refuse_("describes " + name + "=, where " + *meant + "= is meant");
+        const auto [at, fresh] = values_.emplace(name, word.substr(equals + 1));
         if (!fresh && at->second != word.substr(equals + 1)) refuse_("describes " + at->first + " twice, differently");
     }
 }

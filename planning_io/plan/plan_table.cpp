@@ -164,6 +164,10 @@ PlanImport read_trajectory_table(const std::string& content, const fs::path& fil
         read.plan.trajectories.push_back(
             trajectory_of(Row(split_fields(line, separator), number, file), *columns, space, mm_per_unit));
     }
+    if (const auto said = space_marked(comments, file);
+        !read.plan.empty() && ((said && *said != space) || unit_in(comments, file) != mm_per_unit))
+        throw InputError(file, "says another coordinate system or unit below its first row",
+                         "Put the lines that say them before the table.");
     if (read.plan.empty()) throw InputError(file, "holds no trajectories", std::string(kHowTo) + ".");
     return read;
 }

@@ -143,6 +143,23 @@ void add_spoilt_markups(std::vector<PlanCase>& list) {
     add("a diameter of 900 mm", "diameter_mm", [](Markup& m) {
         m.type = "Fiducial", m.points = "[1, 2, 3], \"description\": \"diameter_mm=900\"|[40, 2, 3]";
     });
+    for (const char* said : {"diameter=7", "Diameter_mm = 7", "diamter_mm=7", "depth_cm=1"})
+        add(fmt::format("a name that is nearly one of ours ({})", said), "is meant", [=](Markup& m) {
+            m.type = "Fiducial",
+            m.points = fmt::format("[1, 2, 3], \"description\": \"for the drain, {}\"|[40, 2, 3]", said);
+        });
+    add("a line whose ends have two diameters", "another diameter_mm", [](Markup& m) {
+        m.points = "[1, 2, 3], \"description\": \"diameter_mm=3\"|[40, 2, 3], \"description\": \"diameter_mm=4\"";
+    });
+    const std::string plane =
+        R"("center": [1, 2, 3], "orientation": [1, 0, 0, 0, 1, 0, 0, 0, 1], "size": [80, {}, 0],)";
+    add("a plane without a height", "nothing along a side", [=](Markup& m) {
+        m.type = "Plane", m.points = "[1, 2, 3]", m.more = plane, m.more.replace(plane.find("{}"), 2, "0");
+    });
+    add("a plane that is not placed", "not placed", [=](Markup& m) {
+        m.type = "Plane", m.points = "[1, 2, 3]", m.status = "undefined";
+        m.more = plane, m.more.replace(plane.find("{}"), 2, "40");
+    });
     list.push_back(
         text("markups: LPS, and --frame RAS said", "--frame says otherwise", "p.mrk.json", Markup().text(), kRas));
     list.push_back(text("markups: cut short", "JSON", "p.mrk.json", Markup().text().substr(0, 250)));
@@ -182,6 +199,9 @@ void add_spoilt_tables(std::vector<PlanCase>& list) {
     table("a number with its unit", "\"6mm\"", kTable + "A,1,2,3,4,5,6mm\n");
     table("an infinite number", "\"inf\"", kTable + "A,1,2,3,4,5,inf\n");
     table("no trajectories", "holds no trajectories", kTable);
+    table("another coordinate system below its rows", "below its first row",
+          kTable + "A,1,2,3,40,5,6\n# SPACE=RAS\nB,1,2,9,40,5,6\n");
+    table("a unit below its rows", "below its first row", kTable + "A,1,2,3,40,5,6\n# units=um\nB,1,2,9,40,5,6\n");
 }
 
 void add_spoilt_shapes(std::vector<PlanCase>& list) {

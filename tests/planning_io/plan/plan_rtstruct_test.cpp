@@ -69,6 +69,29 @@ TEST(PlanRtStruct, AnotherFrameOfReferenceIsRefusedWithBothNames) {
     EXPECT_FALSE(fs::exists(folder.path() / "none.dcm"));
 }
 
+TEST(PlanRtStruct, AnAcceptedFrameOfReferenceStandsBesideTheVolumesAndIsSaid) {
+    const test::TemporaryFolder folder;
+    const fs::path of_ct = folder.path() / "a.dcm", accepted = folder.path() / "b.dcm";
+    write_plan_rtstruct(dicom_plan(1), {"code", "1.2.3", "2026-11-21T14:30:00Z"}, of_ct);
+    write_plan_rtstruct(dicom_plan(2), kIdentity, accepted);
+    PlanImportSettings settings{{}, "1.2.3", kIdentity.frame_of_reference_uid};
+    EXPECT_TRUE(import_plan(of_ct, settings).notes.empty()) << "what is the volume's needs nobody's word";
+    const PlanImport read = import_plan(accepted, settings);
+    ASSERT_EQ(read.notes.size(), 1U);
+    EXPECT_NE(read.notes[0].find("nothing but --accept-frame says"), std::string::npos) << read.notes[0];
+    EXPECT_NE(read.notes[0].find("names another"), std::string::npos) << read.notes[0];
+    EXPECT_EQ(read.frame_of_reference_uid, "1.2.3");
+    EXPECT_EQ(import_plan(folder.path(), settings).notes.size(), 1U) << "both are one plan";
+    settings.accepted_frame_uid = "9.9";
+    EXPECT_NE(refusal(accepted, settings).find("the volume in 1.2.3"), std::string::npos);
+    settings = {{}, "", kIdentity.frame_of_reference_uid};
+    ASSERT_EQ(import_plan(accepted, settings).notes.size(), 1U);
+    EXPECT_NE(import_plan(accepted, settings).notes[0].find("names none"), std::string::npos);
+    EXPECT_FALSE(refusal(of_ct, settings).empty());
+    settings = {{}, std::nullopt, "9.9"};
+    EXPECT_NE(refusal(accepted, settings).find("not in 9.9"), std::string::npos);
+}
+
 TEST(PlanRtStruct, ACutOrFlippedFileNeverCrashesTheProgramAndACutOneIsRefused) {
     const test::TemporaryFolder folder;
     const fs::path file = folder.path() / "plan.dcm";
