@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <optional>
 
@@ -16,6 +18,7 @@
 #include "app/report/thresholds_picture.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/plan/plan_file.h"
+#include "planning_io/types/error.h"
 #include "planning_io/types/spare_memory.h"
 #include "planning_io/volume/read_volume.h"
 #include "segmentation/skin_threshold.h"
@@ -31,7 +34,7 @@ struct PrepareOptions {
     std::string risk_frame;           ///< of risk structures that do not say theirs
     Path surface;                     ///< to project on, instead of the skin
     std::string surface_frame, segment;
-    double threshold = 0;  ///< HU; 0 = found from the histogram
+    std::optional<double> threshold;  ///< HU; not given: found from the histogram
     double voxel_mm = 1;
     CaseNames names;         ///< the series' are the volume's
     bool anonymous = false;  ///< no UID and no file name of the volume in the case folder
@@ -47,6 +50,33 @@ struct Inputs {
     std::optional<SurfaceFile> surface;
 };
 
+/// What was noted of files names them: of a folder's files, too.
+void leave_out_names(std::vector<std::string>& notes, const std::vector<Path>& files) {
+    std::vector<std::string> names;
+    for (const Path& file : files) {
+        names.insert(names.end(), {file.string(), file.filename().string()});
+        std::error_code ignored;
+        for (const auto& entry : std::filesystem::directory_iterator(file, ignored))
+            names.push_back(entry.path().filename().string());
+    }
+    std::erase(names, "");
+    std::sort(names.begin(), names.end(),  // a name may be part of another
+              [](const std::string& a, const std::string& b) { return a.size() > b.size(); });
+    const std::string instead = "a file";
+    for (std::string& note : notes)
+        for (const std::string& name : names)
+            for (std::size_t at = 0; (at = note.find(name, at)) != std::string::npos; at += instead.size())
+                note.replace(at, name.size(), instead);
+}
+
+void make_anonymous(Inputs& in, const PrepareOptions& options) {
+    make_anonymous(in.volume);
+    std::vector<Path> of_plan = options.risk;
+    of_plan.push_back(options.plan);
+    leave_out_names(in.plan.notes, of_plan);
+    if (in.surface) leave_out_names(in.surface->notes, {options.surface});
+}
+
 Inputs read_inputs(const PrepareOptions& options) {
     Inputs in;
     in.volume =
@@ -60,7 +90,7 @@ Inputs read_inputs(const PrepareOptions& options) {
             options.surface, {plan_settings(options.surface_frame, options.accept_frame, frame_uid), options.segment});
         check_surface_fits(in.surface->mesh, in.volume, options.surface);
     }
-    if (options.anonymous) make_anonymous(in.volume);
+    if (options.anonymous) make_anonymous(in, options);
     return in;
 }
 
@@ -73,7 +103,7 @@ CaseNames names_of(const PrepareOptions& options) {
 
 Preparation prepare(const Inputs& in, const PrepareOptions& options, ProgressBar& bar) {
     SkinSettings skin;
-    skin.threshold = options.threshold;
+    skin.threshold = options.threshold.value_or(0);
     skin.phantom = options.phantom;
     LutSettings lut;
     lut.voxel_mm = options.voxel_mm;
@@ -124,7 +154,14 @@ void print_summary(const Preparation& done, const PrepareOptions& options) {
     fmt::print("Report: {}\n", (options.out / "report.html").string());
 }
 
+void check_threshold(const std::optional<double>& threshold) {
+    if (threshold && (*threshold == 0 || !std::isfinite(*threshold)))
+        throw Error(ExitCode::usage, fmt::format("--threshold {} is no level between air and skin", *threshold),
+                    "Leave it out, so that it is found, or give one between them (of a CT in HU about -300).");
+}
+
 int run_prepare(const PrepareOptions& options) {
+    check_threshold(options.threshold);
     check_case_names(options.names);
     check_case_place(options.out, options.replace);
     check_pdf(options.pdf, options.out);
@@ -168,12 +205,15 @@ Run add_prepare(CLI::App& app) {
         ->required();
     risk_options(sub, o.risk, o.risk_frame);
     plan_frame_options(sub, o.frame, o.accept_frame);
-    sub->add_option("--surface", o.surface,
-                    "Surface to project on instead of the skin: bone, or any other (.stl, .ply, .obj, .vtp, .vtk, "
-                    "DICOM SEG or RTSTRUCT)");
+    auto* surface =
+        sub->add_option("--surface", o.surface,
+                        "Surface to project on instead of the skin: bone, or any other (.stl, .ply, .obj, .vtp, .vtk, "
+                        "DICOM SEG or RTSTRUCT)");
     sub->add_option("--surface-frame", o.surface_frame, "Coordinate system of a surface that does not say its own")
-        ->check(CLI::IsMember({"LPS", "RAS"}));
-    sub->add_option("--segment", o.segment, "Which segment or ROI of a DICOM SEG or RTSTRUCT, by its name");
+        ->check(CLI::IsMember({"LPS", "RAS"}))
+        ->needs(surface);
+    sub->add_option("--segment", o.segment, "Which segment or ROI of a DICOM SEG or RTSTRUCT, by its name")
+        ->needs(surface);
     sub->add_option("--out", o.out, "Case folder to write")->required();
     series_option(sub, o.series_uid);
     sub->add_option("--title", o.names.title, "What the case is called, in every window and on every page");
@@ -184,10 +224,12 @@ Run add_prepare(CLI::App& app) {
     sub->add_flag("--anonymous", o.anonymous,
                   "Leave UIDs, dates, descriptions and names of files and series out of the case folder")
         ->excludes(patient);
-    sub->add_option("--threshold", o.threshold, "Skin threshold, HU (default: found from the histogram)");
+    sub->add_option("--threshold", o.threshold, "Skin threshold, HU (default: found from the histogram)")
+        ->excludes(surface);
     sub->add_flag("--resample", o.resample,
                   "Lay DICOM slices with uneven steps onto an even grid, between the cuts where they lie");
-    sub->add_flag("--phantom", o.phantom, "Take a phantom, a dry skull or a plate: do not ask whether it is a head");
+    sub->add_flag("--phantom", o.phantom, "Take a phantom, a dry skull or a plate: do not ask whether it is a head")
+        ->excludes(surface);
     sub->add_option("--voxel-mm", o.voxel_mm, "Edge of the LUT's cubic voxels")
         ->capture_default_str()
         ->check(CLI::Range(0.25, 10.0));

@@ -103,6 +103,15 @@ TEST_F(CommandsTest, WhereMemoryIsTooShortToDrawTheCaseIsMadeWithoutViewsAndSays
     EXPECT_NE(read_text(root() / "viewless" / "report.html").find("no views of the head"), std::string::npos);
 }
 
+TEST_F(CommandsTest, AThresholdThatNothingIsMadeOfIsRefused) {
+    const std::string prepare = "prepare " + patient() + " --plan " + plan() + " --voxel-mm 4 --out never";
+    for (const char* level : {"0", "0.0", "-0", "nan", "inf"})
+        expect_one_clear_sentence(run_planlight(prepare + " --threshold " + level, root()), 2, "between air and skin");
+    EXPECT_EQ(run_planlight(prepare + " --threshold -300 --surface any.stl", root()).exit_code, 2);
+    EXPECT_EQ(run_planlight(prepare + " --segment Bone", root()).exit_code, 2) << "of which surface?";
+    EXPECT_FALSE(fs::exists(root() / "never"));
+}
+
 TEST_F(CommandsTest, TheExamplePlanRaisesNoWarningOnItsPatient) {
     for (const auto& warning : json::parse(prepared().out)["warnings"])
         for (const char* item : {"Osteotomy", "B1", "B2", "B3", "B4", "T1"})
@@ -181,6 +190,8 @@ bool folder_says(const fs::path& folder, const std::string& text) {
 TEST_F(CommandsTest, AnAnonymousCaseHoldsNoNameIdOrPathOfTheSeries) {
     const SeriesLook look{.patient = "Mustermann^Erika", .patient_id = "ID-4711", .description = "Kopf duenn"};
     write_series(synthetic_series({}, look), root() / "Mustermann");
+    std::ofstream(root() / "Mustermann.fcsv")  // Slicer 3, which is noted with the file's name
+        << "# Fiducial List file\n# numPoints = 1\n# columns = label,x,y,z,sel,vis\nB1,-71,-4,20,1,1\n";
     std::ofstream(root() / "hole.mrk.json")
         << R"({"@schema": "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/markups-schema-v1.0.3.json#",
         "markups": [{"type": "Fiducial", "coordinateSystem": "LPS", "coordinateUnits": "mm",
@@ -202,6 +213,11 @@ TEST_F(CommandsTest, AnAnonymousCaseHoldsNoNameIdOrPathOfTheSeries) {
         EXPECT_EQ(folder_says(root() / "named_case", text), is_uid) << text;
         EXPECT_EQ(run.out.find(text), std::string::npos) << text;
     }
+    const auto listed = run_planlight(
+        "prepare Mustermann --plan Mustermann.fcsv --voxel-mm 4 --out anonymous_list --anonymous --json", root());
+    ASSERT_EQ(listed.exit_code, 0) << listed.err;
+    EXPECT_TRUE(folder_says(root() / "anonymous_list", "is a list of Slicer 3")) << "it is noted";
+    EXPECT_FALSE(folder_says(root() / "anonymous_list", "Mustermann"));
 }
 
 /// A closed cube of that edge round a point, as OBJ.
