@@ -24,9 +24,8 @@ constexpr Run (*kCommands[])(CLI::App&) = {
 };
 
 constexpr const char* kExitCodes =
-    "Exit codes: 0 done, 2 usage, 3 input refused, 4 file damaged or of another version, 5 device, 6 a check failed, 7 "
-    "disk,\n"
-    "70 a fault of ours.";
+    "Exit codes: 0 done, 2 usage, 3 input refused, 4 file damaged or of another version, 5 device, 6 a check failed,\n"
+    "7 disk or too little memory, 70 a fault of ours.";
 
 void console_options(CLI::App* command, ConsoleSettings& console) {
     auto* quiet = command->add_flag("--quiet", console.quiet, "Say warnings and errors only (and what --json prints)");
