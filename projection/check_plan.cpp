@@ -67,6 +67,7 @@ public:
         check_near_skin(item.name, skin_points(item));
         check_side(item.name, all_points(item));
         check_own(item);
+        check_place(item);
     }
 
     void look_at(const RiskStructure& structure) {
@@ -172,6 +173,24 @@ private:
                  settings_.too_far_mm);
     }
 
+    /// Where it would be drawn there is skin, and that on its axis. What is far, or points out, has been stopped.
+    template <class Item>
+    void check_place(const Item& item) {
+        for (const Vector3d& p : skin_points(item))
+            if (to_skin_mm(p) > settings_.too_far_mm) return;
+        if (points_out(item)) return;
+        if (const auto why = no_place_of(item, skin_)) stop(item.name, "{}", *why);
+    }
+    void check_place(const CutPlane&) {}
+    template <class Item>
+    bool points_out(const Item&) const {
+        return false;
+    }
+    bool points_out(const Borehole& b) const {
+        constexpr double kGrazes = 0.2;
+        return b.axis_in_ct && b.axis_in_ct->dot(skin_.nearest(b.position_in_ct).normal_in_ct) > kGrazes;
+    }
+
     void check_side(const std::string& name, const std::vector<Vector3d>& points) {
         const auto claimed = side_named(name);
         if (!claimed || points.empty()) return;
@@ -209,12 +228,11 @@ private:
     void check_own(const Borehole& b) {
         if (b.depth_mm > settings_.max_depth_mm)
             stop(b.name, "it is {:.0f} mm deep (at most {:.0f} mm)", b.depth_mm, settings_.max_depth_mm);
-        if (b.axis_in_ct && b.axis_in_ct->dot(skin_.nearest(b.position_in_ct).normal_in_ct) > 0.2)
-            stop(b.name, "its axis points out of the body");
+        if (points_out(b)) stop(b.name, "its axis points out of the body");
     }
     void check_own(const OsteotomyLine&) {}
     void check_own(const CutPlane& c) {
-        if (!faults(c, skin_, drawing_).empty()) ++far_items_;  // it does not meet the skin, or is no plane
+        if (!is_plane(c) || trace(skin_, c, drawing_.max_segment_mm).empty()) ++far_items_;
     }
 
     /// A plan whose axes were exchanged or flipped fits the skin when they are put right again.

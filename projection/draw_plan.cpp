@@ -23,8 +23,6 @@ constexpr Rgb kBoreholeCyan{0, 210, 255};
 constexpr Rgb kTrajectoryAmber{255, 180, 0};
 constexpr Rgb kCutPlaneMagenta{255, 60, 255};
 constexpr double kPlaneGap_mm = 2.4;  // about each tick
-constexpr double kSymbolRadius_mm =
-    3;  // of a trajectory's ring when the instrument's diameter is not given, or is smaller
 
 Rgb chosen(const std::optional<Colour>& own, Rgb usual) {
     if (!own) return usual;
@@ -38,19 +36,6 @@ Rgb chosen(const std::optional<Colour>& own, Rgb usual) {
 std::string mm(double value) {
     const double rounded = std::round(10 * value) / 10;
     return rounded == std::round(rounded) ? fmt::format("{:.0f}", rounded) : fmt::format("{:.1f}", rounded);
-}
-
-/// A plan item's place on the skin: where its axis passes through near the point, else the nearest point.
-Point on_skin_along(const SkinSurface& skin, const Vector3d& p, const Vector3d& axis) {
-    const Point nearest = skin.nearest(p);
-    const double distance_mm = (nearest.p_in_ct - p).norm();
-    std::optional<Point> best;
-    for (const double sign : {1.0, -1.0}) {
-        const auto hit = skin.first_hit({p, sign * axis});
-        if (!hit || (hit->p_in_ct - p).norm() > 2 * distance_mm + 0.5) continue;
-        if (!best || (hit->p_in_ct - p).norm() < (best->p_in_ct - p).norm()) best = hit;
-    }
-    return best ? *best : nearest;
 }
 
 }  // namespace
@@ -68,7 +53,7 @@ void PlanDrawer::draw(const OsteotomyLine& line) {
     const int i =
         begin(StrokeKind::osteotomy_line, line.name, on_skin.empty() ? Vector3d::Zero() : on_skin.front().p_in_ct,
               far_mm, faults(line, ct_skin_, settings_));
-    if (on_skin.size() < 2 || too_far(item(i))) return;
+    if (on_skin.size() < 2 || too_far(item(i)) || no_place_of(line, ct_skin_)) return;
     const SkinLine way = join(skin_, on_skin, line.closed, settings_.max_segment_mm);
     if (way.points.size() < 2) return;
     item(i).label = line.name.empty() ? "Osteotomy" : line.name;
@@ -89,12 +74,11 @@ void PlanDrawer::draw(const Borehole& hole) {
         return;
     }
     const Point nearest = ct_skin_.nearest(hole.position_in_ct);
-    const Point at = hole.axis_in_ct && hole.axis_in_ct->norm() > 0.5
-                         ? on_skin_along(skin_, hole.position_in_ct, hole.axis_in_ct->normalized())
-                         : skin_.same_place(ct_skin_, nearest);
+    const PlaceOnSkin place = place_of(hole, ct_skin_, skin_);
+    const Point& at = place.at;
     const int i = begin(StrokeKind::borehole, hole.name, at.p_in_ct, (nearest.p_in_ct - hole.position_in_ct).norm(),
                         faults(hole, ct_skin_, settings_));
-    if (too_far(item(i))) return;
+    if (too_far(item(i)) || !has_place(item(i), place, "its position", has_axis(hole))) return;
     const Rgb colour = chosen(hole.colour, kBoreholeCyan);
     const double radius_mm = std::max(hole.diameter_mm / 2, 0.0);
     std::vector<std::string> figures;
@@ -124,15 +108,16 @@ void PlanDrawer::draw(const Trajectory& t) {
     const bool has_way = t.length_mm() > 1e-6;
     const Vector3d inwards =
         has_way ? Vector3d((t.target_in_ct - t.entry_in_ct) / t.length_mm()) : Vector3d(-nearest.normal_in_ct);
-    const Point at = on_skin_along(skin_, t.entry_in_ct, inwards);
+    const PlaceOnSkin place = place_of(t, ct_skin_, skin_);
+    const Point& at = place.at;
     const int i = begin(StrokeKind::trajectory, t.name, at.p_in_ct, (nearest.p_in_ct - t.entry_in_ct).norm(),
                         faults(t, ct_skin_, settings_));
-    if (too_far(item(i))) return;
+    if (too_far(item(i)) || !has_place(item(i), place, "its entry", true)) return;
     std::vector<std::string> figures;
     if (t.diameter_mm > 0) figures.push_back(fmt::format("⌀{}", mm(t.diameter_mm)));
     figures.push_back(fmt::format("{} mm", mm(t.length_mm())));
     const Rgb colour = chosen(t.colour, kTrajectoryAmber);
-    const double radius_mm = std::max(t.diameter_mm / 2, kSymbolRadius_mm), arm_mm = radius_mm + 2.5;
+    const double radius_mm = ring_radius_mm(t), arm_mm = radius_mm + 2.5;
     add(StrokeKind::trajectory, i, colour, settings_.line_width_mm,
         circle(skin_, at, radius_mm, settings_.max_segment_mm));
     const TextFrame frame = text_frame(at, settings_.up_in_ct);
@@ -150,11 +135,8 @@ void PlanDrawer::draw(const Trajectory& t) {
 
 void PlanDrawer::draw(const CutPlane& plane) {
     const auto warnings = faults(plane, ct_skin_, settings_);
-    const bool drawable = finite(plane) && std::abs(plane.normal_in_ct.norm() - 1) < 1e-3 &&
-                          std::abs(plane.first_axis_in_ct.norm() - 1) < 1e-3 &&
-                          std::abs(plane.normal_in_ct.dot(plane.first_axis_in_ct)) < 1e-3;
     const std::vector<SkinLine> lines =
-        drawable ? trace(skin_, plane, settings_.max_segment_mm) : std::vector<SkinLine>();
+        is_plane(plane) ? trace(skin_, plane, settings_.max_segment_mm) : std::vector<SkinLine>();
     const int i = begin(StrokeKind::cut_plane, plane.name,
                         lines.empty() ? Vector3d::Zero() : lines.front().points.front().p_in_ct, 0, warnings);
     if (lines.empty()) return;

@@ -33,6 +33,22 @@ bool PlanDrawer::too_far(const DrawnItem& item) const {
     return item.distance_to_skin_mm > kTooFarFactor * settings_.max_distance_to_skin_mm;
 }
 
+/// Whether something can be drawn there. What is said of the CT's skin has been said; of the skin as it is now it is
+/// said here.
+bool PlanDrawer::has_place(DrawnItem& item, const PlaceOnSkin& now, const char* what, bool axis) const {
+    const auto why = no_place(skin_, now, what, axis);
+    if (&ct_skin_ == &skin_) return !why;
+    const std::string begin = fmt::format("{}: as the skin lies now, ", item.name);
+    if (why)
+        item.warnings.push_back(begin + *why + "; it is not drawn");
+    else if (axis && now.aside_mm > kToldAside_mm)
+        item.warnings.push_back(
+            begin +
+            fmt::format("its axis does not meet the skin within {:.0f} mm of {}; it is drawn {:.1f} mm beside the axis",
+                        kMostAlong_mm, what, now.aside_mm));
+    return !why;
+}
+
 void PlanDrawer::add(StrokeKind kind, int item_index, Rgb colour, double width_mm, const SkinLine& line) {
     if (line.points.size() < 2) return;
     Stroke stroke{kind, item_index, colour, width_mm, line.closed, {}, {}};

@@ -10,6 +10,7 @@
 #include "projection/label_names.h"
 #include "projection/place_all_labels.h"
 #include "projection/skin_paths.h"
+#include "projection/skin_place.h"
 
 namespace planlight {
 
@@ -36,6 +37,7 @@ private:
     int begin(StrokeKind kind, const std::string& name, const Eigen::Vector3d& anchor, double distance_mm,
               std::vector<std::string> warnings);
     bool too_far(const DrawnItem& item) const;
+    bool has_place(DrawnItem& item, const PlaceOnSkin& now, const char* what, bool axis) const;
     DrawnItem& item(int i) { return drawing.items[static_cast<std::size_t>(i)]; }
     void add(StrokeKind kind, int item_index, Rgb colour, double width_mm, const SkinLine& line);
     void add_bar(StrokeKind kind, int item_index, Rgb colour, const SkinSurface::Point& at,

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "projection/skin_paths.h"
+#include "projection/skin_place.h"
 
 namespace planlight {
 namespace {
@@ -17,7 +18,9 @@ struct Cut {
     std::vector<std::vector<std::size_t>> joined;
 };
 
-Cut cut_mesh(const TriangleMesh& mesh, const CutPlane& plane) {
+/// Of the triangles at the end of the volume, or of all the others.
+Cut cut_mesh(const SkinSurface& skin, const CutPlane& plane, bool at_end) {
+    const TriangleMesh& mesh = skin.mesh();
     Cut cut;
     std::unordered_map<std::uint64_t, std::size_t> point_of_edge;
     const auto height = [&](std::int32_t v) {
@@ -35,7 +38,9 @@ Cut cut_mesh(const TriangleMesh& mesh, const CutPlane& plane) {
         }
         return entry->second;
     };
-    for (const auto& v : mesh.triangles) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto& v = mesh.triangles[t];
+        if ((flag_at(skin, static_cast<int>(t)) == kCutPlane) != at_end) continue;
         std::vector<std::size_t> ends;
         for (std::size_t e = 0; e < 3; ++e)
             if ((height(v[e]) >= 0) != (height(v[(e + 1) % 3]) >= 0)) ends.push_back(point_on(v[e], v[(e + 1) % 3]));
@@ -144,13 +149,21 @@ SkinLine resampled(const SkinSurface& skin, const Chain& chain, double max_segme
 
 std::vector<SkinLine> trace(const SkinSurface& skin, const CutPlane& plane, double max_segment_mm) {
     std::vector<SkinLine> lines;
-    for (const Chain& chain : chains(cut_mesh(skin.mesh(), plane)))
+    for (const Chain& chain : chains(cut_mesh(skin, plane, false)))
         for (const Chain& piece : clipped(plane, chain)) {
             SkinLine line = resampled(skin, piece, max_segment_mm);
             if (length_mm(line) >= 1) lines.push_back(std::move(line));
         }
     std::sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return length_mm(a) > length_mm(b); });
     return lines;
+}
+
+double trace_at_end_mm(const SkinSurface& skin, const CutPlane& plane) {
+    double sum_mm = 0;
+    for (const Chain& chain : chains(cut_mesh(skin, plane, true)))
+        for (const Chain& piece : clipped(plane, chain))
+            for (std::size_t i = 0; i + 1 < piece.size(); ++i) sum_mm += (piece[i + 1] - piece[i]).norm();
+    return sum_mm;
 }
 
 }  // namespace planlight

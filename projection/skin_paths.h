@@ -37,8 +37,11 @@ SkinLine circle(const SkinSurface& skin, const SkinSurface::Point& centre, doubl
 SkinLine bar(const SkinSurface& skin, const SkinSurface::Point& centre, const Eigen::Vector3d& direction_in_ct,
              double back_mm, double ahead_mm, double max_segment_mm);
 
-/// Where the plane's rectangle cuts the skin; the longest piece first, pieces under 1 mm dropped.
+/// Where the plane's rectangle cuts the skin; the longest piece first, pieces under 1 mm dropped. The end of the volume
+/// is no skin: pieces end there.
 std::vector<SkinLine> trace(const SkinSurface& skin, const CutPlane& plane, double max_segment_mm);
+/// How long the plane's cut of the end of the volume is, mm: what `trace` leaves out.
+double trace_at_end_mm(const SkinSurface& skin, const CutPlane& plane);
 
 /// A place on a line and which way it runs there.
 struct LinePlace {

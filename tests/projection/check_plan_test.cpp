@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "planning_io/types/error.h"
+#include "projection/draw_plan.h"
 #include "projection/mid_plane.h"
 #include "projection/plan_sides.h"
 #include "tests/projection/shapes.h"
@@ -95,6 +96,109 @@ TEST(CheckPlan, WhatLiesOutsideTheVolumeIsStopped) {
     box.size = {181, 181, 140};  // up to z = 49: O1 reaches up to 57.4
     EXPECT_TRUE(
         said(check_plan(good_plan(), ball(), box).stops, "O1: its point (53, 16, 57) lies 8 mm outside the volume"));
+}
+
+// 3 mm over the ball along its tangent; 8 mm under flat skin at 84 degrees it is 77 mm to the skin.
+TEST(CheckPlan, AnAxisThatDoesNotMeetTheSkinIsStopped) {
+    const auto verdict_of = [](double over_mm) {
+        Plan plan = good_plan();
+        plan.boreholes.push_back({"B2", {kRadius_mm + over_mm, 0, 0}, Vector3d::UnitZ(), 7, 5, {}});
+        return check_plan(plan, ball());
+    };
+    EXPECT_TRUE(said(verdict_of(3).stops,
+                     "B2: its axis does not meet the skin within 60 mm of its position; the nearest place on the skin "
+                     "lies 3.0 mm beside the axis"));
+    EXPECT_TRUE(verdict_of(1).stops.empty());
+    EXPECT_TRUE(said(verdict_of(1).warnings,
+                     "B2: its axis does not meet the skin within 60 mm of its position; it is "
+                     "drawn 1.0 mm beside the axis"));
+    Plan steep;
+    const double theta = 84 * M_PI / 180;
+    const Vector3d entry(0, 0, -8), inwards(std::sin(theta), 0, -std::cos(theta));
+    steep.trajectories.push_back({"T2", entry, entry + 60 * inwards, 2, {}});
+    EXPECT_TRUE(
+        said(check_plan(steep, SkinSurface(test::sheet_mesh(200, 4))).stops,
+             "T2: its axis does not meet the skin within 60 mm of its entry; the nearest place on the skin lies "
+             "8.0 mm beside the axis"));
+}
+
+/// A head of 90 mm of which the scan holds what lies under z = 50.
+TEST(CheckPlan, WhatComesToLieOnTheEndOfTheVolumeIsStopped) {
+    const SkinSurface cut(test::cut_ball_mesh(90, 50));
+    const double rim_mm = std::sqrt(90 * 90 - 50 * 50);
+    const auto on_skin = [](double longitude, double z) {
+        const double r = std::sqrt(90 * 90 - z * z);
+        return Vector3d(r * std::cos(longitude), r * std::sin(longitude), z);
+    };
+    Plan good;
+    good.trajectories.push_back({"SEEG 1", on_skin(0, 30), {10, 5, -20}, 2, {}});
+    good.boreholes.push_back({"B", on_skin(1, 20), {}, 14, 5, {}});
+    good.osteotomy_lines.push_back({"O", {on_skin(2, 10), on_skin(2.5, 30)}, false, {}});
+    EXPECT_TRUE(check_plan(good, cut).stops.empty()) << check_plan(good, cut).stops.front();
+    EXPECT_TRUE(check_plan(good, cut).warnings.empty()) << check_plan(good, cut).warnings.front();
+
+    Plan wrong = good;
+    wrong.trajectories[0].entry_in_ct = {20, 10, 48};
+    wrong.boreholes[0].position_in_ct = {rim_mm - 5, 0, 50};
+    wrong.osteotomy_lines[0].points_in_ct[1] = {0, 30, 47};
+    const auto stops = check_plan(wrong, cut).stops;
+    for (const char* words :
+         {"SEEG 1: its entry comes to lie on the end of the volume, where the scan ends and shows no skin",
+          "B: its position comes to lie on the end", "O: a point of it comes to lie on the end"})
+        EXPECT_TRUE(said(stops, words)) << words;
+    EXPECT_TRUE(draw_plan(wrong, cut).strokes.empty());
+
+    // Its own place is skin, and what is drawn about it is not.
+    Plan partly;
+    partly.boreholes.push_back({"At the rim", on_skin(0, 47), {}, 14, 5, {}});
+    partly.osteotomy_lines.push_back({"Across", {on_skin(0, 45), on_skin(2.8, 45)}, false, {}});
+    const PlanVerdict verdict = check_plan(partly, cut);
+    EXPECT_TRUE(verdict.stops.empty()) << verdict.stops.front();
+    EXPECT_TRUE(said(verdict.warnings, "At the rim: 3")) << "a third of its ring";
+    EXPECT_TRUE(said(verdict.warnings, "% of its ring lies on the end of the volume"));
+    EXPECT_TRUE(said(verdict.warnings, "mm of it run over the end of the volume"));
+
+    // A lid over the mouth, a nostril or an ear is closed by hand, and no reason to stop.
+    const PlanVerdict lid = check_plan(wrong, SkinSurface(test::cut_ball_mesh(90, 50, kSeal)));
+    EXPECT_TRUE(lid.stops.empty()) << lid.stops.front();
+    EXPECT_TRUE(said(lid.warnings, "SEEG 1: its entry comes to lie on a lid over an opening"));
+}
+
+TEST(CheckPlan, WhatTheSkinHasNoRoomForIsSaid) {
+    const auto hole = [](const Vector3d& at, double diameter_mm) {
+        Plan plan;
+        plan.boreholes.push_back({"B", at, {}, diameter_mm, 5, {}});
+        return plan;
+    };
+    const auto line = [](const Vector3d& a, const Vector3d& b) {
+        Plan plan;
+        plan.osteotomy_lines.push_back({"O", {a, b}, false, {}});
+        return plan;
+    };
+    const SkinSurface sheet(test::sheet_mesh(200, 4));  // its border at 100 mm
+    EXPECT_TRUE(check_plan(hole({90, 0, 0}, 14), sheet).warnings.empty());
+    EXPECT_TRUE(said(check_plan(hole({97, 0, 0}, 14), sheet).warnings, "% of its ring lies beyond the border"));
+    EXPECT_TRUE(said(check_plan(hole({101, 0, 1}, 14), sheet).warnings,
+                     "B: its position lies 1.0 mm beyond the border of the surface; it is drawn at the border"));
+    EXPECT_TRUE(said(check_plan(hole({105, 0, 1}, 14), sheet).stops,
+                     "B: its position lies 5.0 mm beyond the border of the surface"));
+    EXPECT_TRUE(said(check_plan(line({80, 0, 0}, {105, 0, 1}), sheet).stops,
+                     "O: a point of it lies 5.0 mm beyond the border of the surface"));
+
+    // A finger is no place for a large drill: round it the ring is 20 mm, straight across 2 * 5 * sin(2).
+    const SkinSurface finger(test::tube_mesh(5, 100, 1)), arm(test::tube_mesh(20, 200, 2));
+    EXPECT_TRUE(said(check_plan(hole({5, 0, 0}, 20), finger).warnings,
+                     "B: the skin bends so much under its ring of 20.0 mm along the skin that this is only 9.1 mm"));
+    EXPECT_TRUE(check_plan(hole({20, 0, 0}, 20), arm).warnings.empty());
+
+    // The border of the first is ragged: 50.6 mm from its middle there; the other begins at 70.
+    const SkinSurface apart(test::both(test::sheet_mesh(100, 4), test::sheet_mesh(100, 4), {120, 0, 0}));
+    EXPECT_TRUE(said(check_plan(line({40, 0, 0}, {80, 0, 0}), apart).warnings, "O: it jumps 19."));
+    EXPECT_TRUE(check_plan(line({-40, 0, 0}, {40, 0, 0}), apart).warnings.empty());
+    const auto on_arm = [](double angle) { return Vector3d(20 * std::cos(angle), 20 * std::sin(angle), 0); };
+    EXPECT_TRUE(said(check_plan(line(on_arm(0), on_arm(2.97)), arm).warnings,
+                     "O: from its point 1 to 2 it runs 59 mm over the skin, though they are 40 mm apart"));
+    EXPECT_TRUE(check_plan(line(on_arm(0), on_arm(1.5)), arm).warnings.empty());
 }
 
 TEST(CheckPlan, ARiskStructureOutsideTheBodyOrTheVolumeIsStopped) {

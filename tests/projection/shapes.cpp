@@ -95,6 +95,33 @@ TriangleMesh sheet_mesh(double side_mm, double edge_mm) {
     });
 }
 
+TriangleMesh cut_ball_mesh(double radius_mm, double cut_z_mm, SkinFlag lid) {
+    constexpr int kAround = 120, kRings = 50, kLidRings = 24;
+    const double top = std::acos(cut_z_mm / radius_mm), rim_mm = radius_mm * std::sin(top);
+    const auto ring_point = [](double r, double z, int i) {
+        const double around = 2 * std::numbers::pi * i / kAround;
+        return Vector3d(r * std::cos(around), r * std::sin(around), z);
+    };
+    // Rings from the south up to the rim, then inwards over the lid.
+    TriangleMesh mesh = grid(kAround, kRings + kLidRings, true, [&](int u, int v) {
+        if (v < kRings) {
+            const double slope = std::numbers::pi - 0.02 - (std::numbers::pi - 0.02 - top) * v / (kRings - 1);
+            return ring_point(radius_mm * std::sin(slope), radius_mm * std::cos(slope), u);
+        }
+        return ring_point(rim_mm * (kLidRings - (v - kRings) - 1 + 0.01) / kLidRings, cut_z_mm, u);
+    });
+    for (std::size_t i = 0; i < mesh.vertices_in_ct.size(); ++i)
+        mesh.flags.push_back(i < static_cast<std::size_t>(kAround * kRings) ? kSkin : lid);
+    return mesh;
+}
+
+TriangleMesh both(TriangleMesh a, const TriangleMesh& b, const Vector3d& shift_of_b_mm) {
+    const auto first = static_cast<std::int32_t>(a.vertices_in_ct.size());
+    for (const Vector3d& p : b.vertices_in_ct) a.vertices_in_ct.push_back(p + shift_of_b_mm);
+    for (const auto& t : b.triangles) a.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    return a;
+}
+
 CameraModel projector_looking_at(const Vector3d& target_in_rig, const Vector3d& from_direction, double distance_mm,
                                  const Vector3d& up) {
     CameraModel p;

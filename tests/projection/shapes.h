@@ -21,6 +21,12 @@ TriangleMesh tube_mesh(double radius_mm, double length_mm, double edge_mm);
 /// A square in the x-y plane round the origin, its outside towards +z, of uneven triangles.
 TriangleMesh sheet_mesh(double side_mm, double edge_mm);
 
+/// A ball at the origin that a scan cut off at the height z: a flat lid there, flagged so.
+TriangleMesh cut_ball_mesh(double radius_mm, double cut_z_mm, SkinFlag lid = kCutPlane);
+
+/// All triangles of both.
+TriangleMesh both(TriangleMesh a, const TriangleMesh& b, const Eigen::Vector3d& shift_of_b_mm);
+
 /// A 1920 x 1080 projector with strong lens distortion and an off-axis centre, `distance_mm` before the point it looks
 /// at; its picture's up is `up`.
 CameraModel projector_looking_at(const Eigen::Vector3d& target_in_rig, const Eigen::Vector3d& from_direction,

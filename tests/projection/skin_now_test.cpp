@@ -94,6 +94,32 @@ TEST(SkinNow, AHoleStaysOnItsAxis) {
     }
 }
 
+// Planned on the CT's skin, 75 degrees from the perpendicular, and the skin swelled by 6 mm: the axis meets it 20 mm
+// away. Where it sank by 6 mm the axis passes it by, 3 mm away: nothing is drawn beside the axis.
+TEST(SkinNow, AnObliqueAxisIsFollowedHoweverMuchTheSkinSwelled) {
+    const Vector3d p = on_ball(0, 0);
+    const double theta = 75 * M_PI / 180;
+    const Vector3d axis(-std::cos(theta), 0, std::sin(theta));
+    Plan plan;
+    plan.boreholes.push_back({"B", p, axis, 7, 5, {}});
+    plan.trajectories.push_back({"T", p, p + 30 * axis, 2, {}});
+    const SkinSurface swollen(test::ball_mesh(kRadius_mm + 6, 5)), sunk(test::ball_mesh(kRadius_mm - 6, 5));
+    for (const DrawnItem& item : draw_plan(plan, ball(), swollen, without_labels()).items) {
+        EXPECT_NEAR((item.anchor_in_ct - p).cross(axis).norm(), 0, 1e-6) << item.name;
+        EXPECT_NEAR(item.anchor_in_ct.norm(), kRadius_mm + 6, 0.05) << item.name;
+        EXPECT_GT((item.anchor_in_ct - p).norm(), 15) << "or else it would not be noticed";
+        EXPECT_TRUE(item.warnings.empty()) << item.warnings[0];
+    }
+    const PlanDrawing past = draw_plan(plan, ball(), sunk, without_labels());
+    EXPECT_TRUE(past.strokes.empty());
+    for (const DrawnItem& item : past.items) {
+        ASSERT_FALSE(item.warnings.empty());
+        EXPECT_NE(item.warnings.back().find(item.name + ": as the skin lies now, its axis does not meet the skin"),
+                  std::string::npos)
+            << item.warnings.back();
+    }
+}
+
 TEST(SkinNow, ALineIsCarriedWithTheSkinItWasPlannedOn) {
     // Planned 8 mm under the skin, as on the bone: its place is on the CT's skin over it, and goes in with that.
     const auto slope = [](const Vector3d& p) { return -0.5 + 0.02 * p.y(); };
