@@ -47,9 +47,9 @@ struct PlanVerdict {
     double share_far = 0;               ///< of the items, farther than `near_skin_mm`
 };
 
-/// Judges a plan by its patient's skin: entries near the skin, targets and risk structures inside, nothing swapped,
-/// zero, NaN or outside the volume, sides as their names say, and no turned or mirrored copy of the plan that fits the
-/// skin far better than the plan does.
+/// Judges a plan by its patient's skin: entries near the skin, on their axes and not on the end of the volume, targets
+/// and risk structures inside, nothing swapped, zero, NaN or outside the volume, sides as their names say, and no
+/// turned or mirrored copy of the plan that fits the skin far better than the plan does.
 PlanVerdict check_plan(const Plan& plan, const SkinSurface& skin, const std::optional<VolumeBox>& volume = std::nullopt,
                        const PlanCheckSettings& settings = {});
 

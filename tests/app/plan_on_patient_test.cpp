@@ -38,8 +38,9 @@ Plan moved(Plan plan, const Move& move) {
 
 /// The words of a stop that tell its kind.
 std::string kind_of(const std::string& stop) {
-    for (const char* words : {"outside the volume", "too far to be drawn", "items lie more than", "outside the body",
-                              "swapped", "it is named", "axes are exchanged"})
+    for (const char* words :
+         {"outside the volume", "too far to be drawn", "items lie more than", "outside the body", "swapped",
+          "it is named", "axes are exchanged", "the end of the volume", "does not meet the skin"})
         if (stop.find(words) != std::string::npos) return words;
     return stop;
 }
@@ -145,8 +146,10 @@ TEST_F(PlanOnPatient, PlansOnTheSkinAndOnTheBoneBelowItAreNotStopped) {
             while (line.points_in_ct.size() < 15) {
                 const Vector3d offset(80 * unit(random) - 40, 80 * unit(random) - 40, 80 * unit(random) - 40);
                 const auto at = skin->nearest(mesh.vertices_in_ct[v] + offset);
-                if ((at.p_in_ct - mesh.vertices_in_ct[v]).norm() < 40)
-                    line.points_in_ct.push_back(at.p_in_ct - depth_mm * at.normal_in_ct);
+                const Vector3d p = at.p_in_ct - depth_mm * at.normal_in_ct;
+                const bool near = (at.p_in_ct - mesh.vertices_in_ct[v]).norm() < 40;
+                // Where the scan ends there is no skin to plan on, and that is stopped.
+                if (near && skin->real_skin(at) && skin->real_skin(skin->nearest(p))) line.points_in_ct.push_back(p);
             }
             Plan patch;
             patch.osteotomy_lines.push_back(std::move(line));
