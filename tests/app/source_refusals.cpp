@@ -1,6 +1,7 @@
 #include "tests/app/source_refusals.h"
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <map>
 #include <optional>
