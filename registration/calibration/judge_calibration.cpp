@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace planlight {
 namespace {
@@ -138,6 +139,52 @@ double light_by_itself_px(const std::vector<PoseObservation>& poses, const Board
     return median(std::move(misfits));
 }
 
+/// Poses that a device's other poses contradict: over half of what it saw there is left out.
+std::vector<std::size_t> odd_poses(const BundleResult& bundle, DeviceName device) {
+    constexpr std::size_t kLeast = 10;
+    std::vector<std::size_t> odd;
+    for (const PoseResidual& r : bundle.residuals)
+        if (r.device == device && r.used + r.left_out >= kLeast && r.left_out > r.used) odd.push_back(r.pose);
+    std::sort(odd.begin(), odd.end());
+    return odd;
+}
+
+/// When a device that stood otherwise in these poses (at least one) was moved, as far as their place in the order says.
+std::string when_moved(const std::vector<std::size_t>& odd, const std::vector<PoseObservation>& poses,
+                       const RigEstimate& rig) {
+    std::vector<std::size_t> seen;
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        if (rig.rig_from_board[i]) seen.push_back(i);
+    const std::size_t n = std::min(odd.size(), seen.size());
+    if (std::equal(odd.begin(), odd.end(), seen.end() - static_cast<std::ptrdiff_t>(n), seen.end()))
+        return "before " + poses[odd.front()].name;
+    if (std::equal(odd.begin(), odd.end(), seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(n)))
+        return "after " + poses[odd.back()].name;
+    return odd.size() == 1 ? "for that pose" : "for those poses";
+}
+
+/// A device that was moved before the last pose or after the first contradicts one pose only: a small share of all that
+/// was seen, which no median feels.
+std::optional<Refusal> judge_odd_poses(const std::vector<PoseObservation>& poses, const BundleResult& bundle) {
+    for (const DeviceName device : kDevices) {
+        if (!bundle.rig.device(device)) continue;
+        const std::vector<std::size_t> odd = odd_poses(bundle, device);
+        if (odd.empty()) continue;
+        std::vector<std::string> names;
+        for (const std::size_t pose : odd) names.push_back(poses[pose].name);
+        const bool light = device == DeviceName::projector;
+        const char* them = odd.size() == 1 ? "that pose" : "those poses";
+        return Refusal{
+            fmt::format("the {}'s {} of {} contradict{} the other poses': {} was moved {}, or the pictures of {} are bad",
+                        text_of(device), light ? "light" : "corners", fmt::join(names, ", "), light ? "s" : "",
+                        light ? "the projector, or a camera," : "a camera", when_moved(odd, poses, bundle.rig), them),
+            fmt::format("If every device stands now as it stood in the other poses, take {} out of the folder and "
+                        "calibrate again; else fix all devices to the rig and capture all poses again.",
+                        fmt::join(names, ", "))};
+    }
+    return std::nullopt;
+}
+
 std::optional<Refusal> judge_lens(const CameraModel& d, DeviceName name) {
     const double by_width = d.focal_x / d.width, aspect = d.focal_x / d.focal_y;
     const std::string what = text_of(name);
@@ -158,6 +205,15 @@ std::optional<Refusal> judge_lens(const CameraModel& d, DeviceName name) {
             fmt::format("the {}'s optical axis comes out at pixel {:.0f}, {:.0f}", what, d.centre_x, d.centre_y),
             remedy};
     return std::nullopt;
+}
+
+/// Of a camera that is upright to the left one and beside it. Of cameras that are rolled against each other or stand
+/// one above the other, none is the left one by its pictures.
+bool stands_on_the_left(const CameraModel& right) {
+    const double kUpright = std::cos(std::numbers::pi / 4);
+    const Vector3d centre = right.centre_in_rig();
+    const bool beside = std::abs(centre.x()) >= std::max(std::abs(centre.y()), std::abs(centre.z()));
+    return beside && right.device_from_rig.linear()(0, 0) > kUpright && centre.x() < 0;
 }
 
 }  // namespace
@@ -188,8 +244,9 @@ std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, 
             "Fix the cameras to the rig, then capture all poses again."};
     }
     if (auto refusal = judge_pair(poses, board, cameras, s)) return refusal;
+    if (auto refusal = judge_odd_poses(poses, cameras)) return refusal;
     const auto& right = cameras.rig.device(DeviceName::right_camera);
-    if (right && right->centre_in_rig().x() < 0)
+    if (right && stands_on_the_left(*right))
         return Refusal{
             fmt::format("the right camera stands {:.0f} mm to the left of the left one: left and right are swapped",
                         -right->centre_in_rig().x()),
@@ -226,6 +283,7 @@ std::optional<Refusal> judge_rig(const std::vector<PoseObservation>& poses, cons
         if (!fits(bundle, s))
             return Refusal{"the cameras fit the board, but not together with the light",
                            "Fix all devices to the rig, then capture all poses again."};
+        if (auto refusal = judge_odd_poses(poses, bundle)) return refusal;
     }
     for (const DeviceName name : kDevices)
         if (const auto& d = bundle.rig.device(name))

@@ -156,6 +156,45 @@ TEST(CalibrateRigRefuses, AProjectorMovedBetweenPoses) {
     expect_refused(calibrated(room, poses), "the light does not fit");
 }
 
+/// One pose of 13 is 8 % of what was seen: neither a share of all nor a median feels it, and a rig.json would say where
+/// the device stood before.
+TEST(CalibrateRigRefuses, ADeviceKnockedBeforeTheLastPoseOrAfterTheFirst) {
+    for (const char* board : {"chessboard 9x6 25 mm", "charuco 10x7 25 mm"})
+        for (const DeviceName name : {DeviceName::left_camera, DeviceName::right_camera, DeviceName::projector}) {
+            const test::IdealRoom room = test::ideal_room(13, 25, board);
+            test::IdealRoom knocked = room;
+            CameraModel& device = name == DeviceName::projector     ? knocked.rig.projector
+                                  : name == DeviceName::left_camera ? knocked.rig.left_camera
+                                                                    : knocked.rig.right_camera;
+            device.device_from_rig = Eigen::AngleAxisd(0.3 * M_PI / 180, Vector3d::UnitY()) * device.device_from_rig;
+            const auto before = room.observe(), after = knocked.observe();
+            auto last = before;
+            last.back() = after.back();
+            const Calibration at_the_end = calibrated(room, last);
+            expect_refused(at_the_end, "moved before pose-12");
+            EXPECT_NE(at_the_end.refusal->remedy.find("take pose-12 out of the folder"), std::string::npos);
+            auto first = after;
+            first.front() = before.front();
+            expect_refused(calibrated(room, first), "moved after pose-00");
+            auto two = before;
+            two[11] = after[11], two[12] = after[12];
+            expect_refused(calibrated(room, two), "moved");
+        }
+}
+
+/// Nobody moved anything: the light of one pose is that of another picture. The sentence leaves that open.
+TEST(CalibrateRigRefuses, OnePoseWithBadPictures) {
+    const test::IdealRoom room = test::ideal_room(13);
+    auto poses = room.observe();
+    for (auto* seen : {&poses[5].left, &poses[5].right})
+        for (LightSample& sample : seen->light) sample.pixel_in_projector += Vector2d(16, 0);
+    const Calibration found = calibrated(room, poses);
+    expect_refused(found, "the projector's light of pose-05 contradicts");
+    EXPECT_NE(found.refusal->reason.find("or the pictures of that pose are bad"), std::string::npos);
+    poses.erase(poses.begin() + 5);
+    EXPECT_FALSE(calibrated(room, poses).refusal) << "as the remedy says";
+}
+
 /// A hundredth of a degree is 0.4 px, 0.16 mm on the patient: five times the noise, and no reason to be content.
 TEST(CalibrateRigRefuses, AHundredthOfADegreeOfACameraOrTheProjector) {
     const test::IdealRoom room = test::ideal_room();

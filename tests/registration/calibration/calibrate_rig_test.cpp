@@ -116,6 +116,27 @@ TEST(CalibrateRig, ADeviceHungUpsideDownIsAsGoodAsAnUprightOne) {
     }
 }
 
+/// Which camera is the left one is a matter of two upright pictures: a left camera that hangs upside down has the right
+/// one on its left, and cameras on their sides stand one above the other. All are rigs.
+TEST(CalibrateRig, CamerasRolledAgainstEachOtherAreARig) {
+    for (const auto& [left_deg, right_deg] :
+         {std::pair(180.0, 0.0), {0.0, 180.0}, {90.0, 0.0}, {-90.0, 90.0}, {90.0, 90.0}, {-90.0, -90.0}}) {
+        test::IdealRoom room = test::ideal_room();
+        const auto roll = [](CameraModel& camera, double deg) {
+            camera.device_from_rig = Eigen::AngleAxisd(deg * M_PI / 180, Vector3d::UnitZ()) * camera.device_from_rig;
+            camera.width = camera.height = 744;  // so that the board stays in the picture
+            camera.centre_x = camera.centre_y = 371.5;
+        };
+        roll(room.rig.left_camera, left_deg);
+        roll(room.rig.right_camera, right_deg);
+        const Calibration found = calibrated(room, room.observe());
+        ASSERT_FALSE(found.refusal) << left_deg << " " << right_deg << ": " << found.refusal->reason;
+        const RigidTransform right_from_left =
+            room.rig.right_camera.device_from_rig * room.rig.left_camera.device_from_rig.inverse();
+        EXPECT_LT(angle_between(found.device(DeviceName::right_camera)->device_from_rig, right_from_left), 3e-3);
+    }
+}
+
 /// The corners of the right camera, named as a board turned by `quarters` would have them named.
 void turn_names(test::IdealRoom& room, PoseObservation& pose, int quarters) {
     const int across = room.board.corners_across(), down = room.board.corners_down();
