@@ -84,7 +84,10 @@ CameraPage::~CameraPage() = default;
 CameraPageAction CameraPage::frame(const CameraPageModel& model) {
     Parts& parts = *parts_;
     parts.gui.take_input(0);
-    if (parts.input.take_dark()) return CameraPageAction::dark;
+    if (parts.input.take_dark()) {
+        parts.gui.forget_presses();
+        return CameraPageAction::dark;
+    }
     if (parts.gui.asked_to_close()) return CameraPageAction::quit;
     CameraPageAction wanted = CameraPageAction::none;
     const bool changed = !parts.drawn || !(*parts.drawn == model) || parts.gui.touched();

@@ -70,7 +70,10 @@ DoctorPage::~DoctorPage() = default;
 DoctorPageAction DoctorPage::frame(const DoctorPageModel& model) {
     Parts& parts = *parts_;
     parts.gui.take_input(0);
-    if (parts.input.take_dark()) return DoctorPageAction::dark;
+    if (parts.input.take_dark()) {
+        parts.gui.forget_presses();
+        return DoctorPageAction::dark;
+    }
     if (parts.gui.asked_to_close()) return DoctorPageAction::quit;
     DoctorPageAction wanted = DoctorPageAction::none;
     const bool changed = !parts.drawn || !(*parts.drawn == model);

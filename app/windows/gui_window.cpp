@@ -14,6 +14,7 @@
 #include "app/windows/status_word.h"
 #include "planning_io/types/error.h"
 #include "projection/glfw_session.h"
+#include "projection/monitors_kept_on.h"
 #include "projection/projector_window.h"
 
 namespace planlight {
@@ -76,6 +77,7 @@ int key_by_label(int key, int scan_code) {
 
 struct GuiWindow::Parts {
     std::shared_ptr<void> session = glfw_session();
+    const MonitorsKeptOn kept_on;
     FontFiles font_files = find_fonts();
     WindowListener listener;
     GLFWwindow* window = nullptr;
@@ -225,6 +227,16 @@ void GuiWindow::frame(const Draw& draw) {
     ImGui::Render();
     parts_->paint();
     glfwSwapBuffers(parts_->window);
+}
+
+void GuiWindow::forget_presses() {
+    make_current();
+    if (!ImGui::GetIO().Fonts->IsBuilt()) return;  // nothing was drawn yet that could be pressed
+    // A frame without a button: Dear ImGui takes the presses that wait, and lets go of the button that is held.
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    ImGui::EndFrame();
+    parts_->to_settle = kFramesAfterInput;
 }
 
 RgbImage GuiWindow::screenshot() {

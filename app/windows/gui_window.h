@@ -40,6 +40,9 @@ public:
     /// What the last frame showed.
     RgbImage screenshot();
 
+    /// No button answers to what the mouse has begun or done so far: after DARK. Draws nothing.
+    void forget_presses();
+
     void make_current();
     bool asked_to_close() const;
     void keep_open();  ///< forgets that it was asked to close

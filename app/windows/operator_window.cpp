@@ -13,6 +13,7 @@
 #include "app/windows/layout.h"
 #include "app/windows/middle_view.h"
 #include "app/windows/operator_keys.h"
+#include "app/windows/page_input.h"
 #include "app/windows/panels.h"
 
 namespace planlight {
@@ -39,8 +40,7 @@ constexpr WayButton kWay[] = {
 }  // namespace
 
 struct OperatorWindow::Parts {
-    bool dark_pressed = false;
-    KeyMeaning key = KeyMeaning::none;  ///< pressed last, and not yet acted upon
+    PageInput<KeyMeaning> input;
     WindowLayout place;
     GuiWindow gui;
     std::unique_ptr<MiddleView> middle;
@@ -62,17 +62,10 @@ struct OperatorWindow::Parts {
     Parts(const Parts&) = delete;
     Parts& operator=(const Parts&) = delete;
 
-    /// DARK is taken from the events themselves, so that a press shorter than a frame is not lost.
     WindowListener listener() {
-        return {[this](int pressed, int) {
-                    const KeyMeaning meaning = meaning_of(pressed);
-                    if (meaning == KeyMeaning::dark)
-                        dark_pressed = true;
-                    else if (meaning != KeyMeaning::none)
-                        key = meaning;
-                },
+        return {[this](int pressed, int) { input.press(meaning_of(pressed)); },
                 [this](double x, double y) {
-                    if (place.dark.contains(x, y)) dark_pressed = true;
+                    if (place.dark.contains(x, y)) input.press(KeyMeaning::dark);
                 }};
     }
 
@@ -82,7 +75,7 @@ struct OperatorWindow::Parts {
     }
 
     bool must_draw(const OperatorModel& model) const {
-        return gui.touched() || key != KeyMeaning::none || middle->wants_frame() || !drawn || !(*drawn == model) ||
+        return gui.touched() || input.waits() || middle->wants_frame() || !drawn || !(*drawn == model) ||
                (!notice.empty() && steady_clock::now() > notice_until);
     }
 
@@ -199,7 +192,7 @@ struct OperatorWindow::Parts {
 
     /// What the key that was pressed last means now.
     OperatorAction take_key(const OperatorModel& model) {
-        KeyMeaning pressed = std::exchange(key, KeyMeaning::none);
+        KeyMeaning pressed = input.take();
         if (asks_to_close) {
             if (pressed == KeyMeaning::stay || pressed == KeyMeaning::next) asks_to_close = false;
             return pressed == KeyMeaning::close_window ? OperatorAction::quit : OperatorAction::none;
@@ -243,7 +236,10 @@ OperatorAction OperatorWindow::frame(const OperatorModel& model) {
     Parts& parts = *parts_;
     parts.gui.take_input(0);
     // Before anything is drawn: without graphics hardware that takes half a second, in which the light would go on.
-    if (std::exchange(parts.dark_pressed, false)) return OperatorAction::dark;
+    if (parts.input.take_dark()) {
+        parts.gui.forget_presses();
+        return OperatorAction::dark;
+    }
     if (parts.take_close(model)) {
         parts.gui.keep_open();  // it has been said
         return OperatorAction::quit;

@@ -7,7 +7,7 @@ namespace planlight {
 /// What was pressed on a page between two of its frames. `Action` has `none` and `dark`.
 ///
 /// DARK is taken from the events themselves, so that a press shorter than a frame is not lost, and comes before
-/// whatever else was pressed.
+/// whatever else was pressed: a window that was busy takes both at once, and no light may follow darkness.
 template <typename Action>
 class PageInput {
 public:
@@ -24,6 +24,8 @@ public:
         pressed_ = Action::none;
         return true;
     }
+    /// Something other than DARK waits to be taken.
+    bool waits() const { return pressed_ != Action::none; }
     Action take() { return std::exchange(pressed_, Action::none); }
 
 private:

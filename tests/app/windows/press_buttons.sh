@@ -14,6 +14,20 @@ click $(place track); wait_for "answer Track is not possible now: is running." "
 silent "and nothing else"
 xdotool mousemove $(place dark); sleep 0.4; xdotool click 1; wait_for dark "DARK by the shortest click"
 for key in space b Escape Prior; do xdotool key $key; wait_for dark "DARK by the key $key"; done
+busy_with() {  # busy_with PRESS...: what is done while the window is busy with a frame; it takes all of it at once
+  local frozen; frozen=$(pgrep -P "$pid")
+  kill -STOP "$frozen"; for press in "$@"; do xdotool $press; done; kill -CONT "$frozen"
+}
+for key in s Return; do
+  busy_with "key $key" "key space"; wait_for dark "DARK in a busy window"; silent "and nothing of $key that was pressed before it"
+done
+busy_with "key b" "key s"; wait_for dark "DARK in a busy window"; silent "and nothing of what was pressed beside it"
+xdotool mousemove $(place scan); sleep 0.4
+busy_with "mousedown 1" "mouseup 1" "key space"; wait_for dark "DARK in a busy window"; silent "and nothing of a click before it"
+busy_with "mousedown 1" "key space" "mouseup 1"; wait_for dark "DARK in a busy window"; silent "and nothing of a click around it"
+xdotool mousedown 1; sleep 0.4; xdotool key space; wait_for dark "DARK while a button is held down"
+xdotool mouseup 1; silent "and nothing of that button"
+click $(place scan); wait_for scan "the next click counts"
 for pair in s:scan r:register x:stop c:confirm; do xdotool key ${pair%:*}; wait_for ${pair#*:} "the key ${pair%:*}"; done
 for pair in 1:before 3:error 2:after; do xdotool key ${pair%:*}; wait_for "view ${pair#*:}" "the view ${pair#*:} by its key"; done
 xdotool key t; wait_for "answer Track is not possible now: is running." "the key of a button that is not enabled says why"

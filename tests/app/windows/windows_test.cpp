@@ -12,6 +12,7 @@
 #include "app/windows/operator_keys.h"
 #include "app/windows/operator_model.h"
 #include "app/windows/orientation.h"
+#include "app/windows/page_input.h"
 
 namespace planlight {
 namespace {
@@ -165,6 +166,30 @@ TEST(OperatorKeys, EveryMeaningHasAKeyThatIsShownAndDarkHasFour) {
 }
 
 // What is drawn is decided by this comparison: a model that differs anywhere must not be taken for the former one.
+// A window that was busy hears both at once: no light may follow darkness.
+TEST(PageInput, DarkForgetsWhatWasPressedBesideIt) {
+    for (const bool dark_first : {false, true}) {
+        PageInput<KeyMeaning> input;
+        if (dark_first) input.press(KeyMeaning::dark);
+        input.press(KeyMeaning::scan);
+        if (!dark_first) input.press(KeyMeaning::dark);
+        EXPECT_TRUE(input.take_dark());
+        EXPECT_FALSE(input.waits());
+        EXPECT_EQ(input.take(), KeyMeaning::none);
+        EXPECT_FALSE(input.take_dark()) << "once";
+    }
+}
+
+TEST(PageInput, APressIsTakenOnce) {
+    PageInput<KeyMeaning> input;
+    input.press(KeyMeaning::track);
+    input.press(KeyMeaning::none);
+    EXPECT_FALSE(input.take_dark());
+    EXPECT_TRUE(input.waits());
+    EXPECT_EQ(input.take(), KeyMeaning::track);
+    EXPECT_FALSE(input.waits());
+}
+
 TEST(OperatorModelComparison, NoticesWhatAPersonWouldSee) {
     const OperatorModel model;
     const auto differs = [&](auto change) {
