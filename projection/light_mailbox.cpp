@@ -45,7 +45,7 @@ void keep_text(std::span<char> place, const std::string& text) {
 struct LightMailbox::Shared {
     std::atomic<std::uint32_t> state{static_cast<std::uint32_t>(State::starting)};
     std::int32_t width = 0, height = 0;
-    char problem[600] = {}, remedy[300] = {};
+    char problem[600] = {}, remedy[300] = {}, monitor[200] = {};
     std::atomic<std::int64_t> lease_until_ns{0}, done_at_ns{0}, alive_at_ns{0}, busy_since_ns{0};
     std::atomic<std::uint64_t> done{0};
     std::atomic<std::uint32_t> middle{0};  ///< the slot that neither side owns, and whether it is fresh
@@ -108,10 +108,11 @@ Instant LightMailbox::lease_until() const {
     return Instant(shared_->lease_until_ns.load(std::memory_order_acquire));
 }
 
-void LightMailbox::say_ready(int width, int height) {
+void LightMailbox::say_ready(int width, int height, const std::string& monitor) {
     check_room(static_cast<std::size_t>(width), static_cast<std::size_t>(height));
     shared_->width = width;
     shared_->height = height;
+    keep_text(shared_->monitor, monitor);
     shared_->state.store(static_cast<std::uint32_t>(State::ready), std::memory_order_release);
 }
 
@@ -142,6 +143,9 @@ int LightMailbox::width() const {
 }
 int LightMailbox::height() const {
     return shared_->height;
+}
+std::string LightMailbox::monitor() const {
+    return shared_->monitor;
 }
 std::string LightMailbox::problem() const {
     return shared_->problem;

@@ -46,8 +46,9 @@ public:
     /// True when there is an order that was not taken yet; it is the newest.
     bool take(Order& order);
     Instant lease_until() const;
-    /// Throws DeviceError when pictures of that size have no room here.
-    void say_ready(int width, int height);
+    /// `monitor`: its name, also where it was asked for by its number. Throws DeviceError when pictures of that size
+    /// have no room here.
+    void say_ready(int width, int height, const std::string& monitor);
     void say_failed(const std::string& problem, const std::string& remedy);
     void say_done(std::uint64_t number, Instant at);
     void say_alive(Instant at);
@@ -58,6 +59,7 @@ public:
     State state() const;
     int width() const;
     int height() const;
+    std::string monitor() const;  ///< after `State::ready`; empty: it was not told
     std::string problem() const;  ///< after `State::failed`
     std::string remedy() const;
     std::uint64_t done() const;  ///< number of the last order that is on the display

@@ -51,7 +51,7 @@ pid_t spawn(const std::filesystem::path& program, const std::string& monitor, in
 }  // namespace
 
 ProjectorProcess::ProjectorProcess(const std::string& monitor, const ProjectorProcessSettings& settings)
-    : settings_(settings) {
+    : settings_(settings), monitor_(monitor) {
     start(monitor);
     try {
         wait_until_ready();
@@ -97,12 +97,15 @@ void ProjectorProcess::wait_until_ready() {
     if (mailbox_.state() == LightMailbox::State::failed) fail(mailbox_.problem(), mailbox_.remedy());
     width_ = mailbox_.width();
     height_ = mailbox_.height();
+    if (const std::string name = mailbox_.monitor(); !name.empty()) monitor_ = name;
 }
 
 void ProjectorProcess::fail(const std::string& problem, const std::string& remedy) {
     end();
     // The process names its device itself.
-    throw Error(ExitCode::device, problem, remedy);
+    const std::size_t colon = problem.find(": ");
+    if (colon == std::string::npos) throw DeviceError("Projector", problem, remedy);
+    throw DeviceError(problem.substr(0, colon), problem.substr(colon + 2), remedy);
 }
 
 void ProjectorProcess::end() noexcept {
@@ -132,16 +135,19 @@ void ProjectorProcess::check() {
 void ProjectorProcess::check_locked() {
     constexpr const char* kRemedy =
         "The light is dark. It can be started again; if this comes back, restart the computer.";
-    if (process_ < 0) fail("projector process: it has ended", kRemedy);
+    if (process_ < 0) throw DeviceError("projector process", "it has ended", kRemedy);
     if (mailbox_.state() == LightMailbox::State::failed) fail(mailbox_.problem(), mailbox_.remedy());
     if (waitpid(process_, nullptr, WNOHANG) == process_) {
         process_ = -1;
-        fail("projector process: it was ended from outside, or crashed", kRemedy);
+        end();
+        throw DeviceError("projector process", "it was ended from outside, or crashed", kRemedy);
     }
     const Instant busy_since = mailbox_.busy_since();
     if (clock_.now() - mailbox_.alive_at() > settings_.silence_allowed ||
-        (busy_since.count() > 0 && clock_.now() - busy_since > settings_.work_allowed))
-        fail("projector process: it does not answer any more", kRemedy);
+        (busy_since.count() > 0 && clock_.now() - busy_since > settings_.work_allowed)) {
+        end();
+        throw DeviceError("projector process", "it does not answer any more", kRemedy);
+    }
 }
 
 bool ProjectorProcess::shown_in_time(std::uint64_t number) {

@@ -39,6 +39,8 @@ public:
 
     int width() const override { return width_; }
     int height() const override { return height_; }
+    /// The name of its monitor. It stays, where a number means another monitor once one was unplugged.
+    const std::string& monitor() const { return monitor_; }
 
     /// Returns when the picture is on the display. Throws DeviceError, with the process ended and so dark, when it does
     /// not come there, the monitor is gone or the window does not cover it.
@@ -71,6 +73,7 @@ private:
     pid_t process_ = -1;
     int bell_ = -1;  ///< a byte here wakes the process; its end tells it that we are gone
     int width_ = 0, height_ = 0;
+    std::string monitor_;
 };
 
 /// The descriptors that the projector process finds open.

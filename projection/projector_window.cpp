@@ -13,6 +13,7 @@
 #include "projection/edid.h"
 #include "projection/glfw_session.h"
 #include "projection/monitor_lock.h"
+#include "projection/monitors_kept_on.h"
 #include "projection/picture_thread.h"
 #include "projection/refuse_input.h"
 
@@ -112,6 +113,7 @@ std::vector<Monitor> list_monitors() {
 
 struct ProjectorWindow::Parts {
     std::shared_ptr<void> session = glfw_session();
+    const MonitorsKeptOn kept_on;
     ProjectorWindowSettings settings;
     const Clock& clock;
     GLFWmonitor* handle = nullptr;
@@ -229,6 +231,9 @@ int ProjectorWindow::width() const {
 }
 int ProjectorWindow::height() const {
     return parts_->monitor.height;
+}
+const std::string& ProjectorWindow::monitor() const {
+    return parts_->monitor.name;
 }
 bool ProjectorWindow::dark() const {
     return parts_->picture->dark();

@@ -40,6 +40,7 @@ public:
 
     int width() const override;
     int height() const override;
+    const std::string& monitor() const;  ///< its name, also where it was asked for by its number
     Instant show(const RgbImage& picture, Instant valid_until) override;
     void go_dark() noexcept override;
 

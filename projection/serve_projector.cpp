@@ -59,7 +59,7 @@ void follow(ProjectorWindow& window, LightMailbox& mailbox, int bell) {
     const SteadyClock clock;
     const Pulse pulse(mailbox);
     LightMailbox::Order order;
-    mailbox.say_ready(window.width(), window.height());
+    mailbox.say_ready(window.width(), window.height(), window.monitor());
     do {
         mailbox.say_busy(clock.now());
         const bool ordered = mailbox.take(order);

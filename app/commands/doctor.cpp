@@ -42,7 +42,7 @@ void print(const DoctorOptions& options, const std::vector<DoctorLine>& lines, d
         return;
     }
     print_lines(lines);
-    fmt::print("{} good, {} to look at, {} that stop; {:.0f} s.\n", count(Health::good), count(Health::look),
+    fmt::print("{} good, {} to look at, {} STOP; {:.0f} s.\n", count(Health::good), count(Health::look),
                count(Health::stop), took_s);
     std::fflush(stdout);
 }

@@ -25,7 +25,9 @@ MachineFigures examine_machine(const fs::path& folder) {
         machine.gl_renderer = opengl_driver();
     } catch (const Error& error) {
         machine.gl_problem = error.what();
+        machine.gl_remedy = error.remedy;
     }
+    machine.dark_after = monitors_dark_after();
     for (const auto& cpu : fs::directory_iterator("/sys/devices/system/cpu", failure)) {
         std::ifstream file(cpu.path() / "cpufreq" / "scaling_governor");
         std::string governor;

@@ -304,6 +304,25 @@ std::vector<DoctorLine> judge_rig(const DriftCheck& check, std::optional<double>
     return lines;
 }
 
+namespace {
+
+/// The light is a monitor: what makes one dark because nobody touches the keyboard puts it out.
+DoctorLine judge_monitors_that_go_dark(const MonitorsDarkAfter& dark) {
+    const std::string subject = "computer, screen saver";
+    if (!dark.unused_s) return line(subject, Health::good, "no monitor goes dark by itself", {});
+    if (dark.can_be_kept_on)
+        return line(subject, Health::good,
+                    fmt::format("waits while Planlight's windows are open; else monitors go dark after {} s unused",
+                                *dark.unused_s),
+                    {});
+    return line(subject, Health::stop,
+                fmt::format("monitors go dark after {} s unused, the projector too, and it cannot be told to wait",
+                            *dark.unused_s),
+                "Switch that off: `xset s off -dpms`.");
+}
+
+}  // namespace
+
 std::vector<DoctorLine> judge_machine(const MachineFigures& machine) {
     constexpr double kGb = 1e9, kFew_gb = 10, kNone_gb = 1;
     std::vector<DoctorLine> lines;
@@ -321,8 +340,7 @@ std::vector<DoctorLine> judge_machine(const MachineFigures& machine) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     const auto names = [&](const char* word) { return renderer.find(word) != std::string::npos; };
     if (renderer.empty())
-        lines.push_back(line("computer, OpenGL", Health::stop, machine.gl_problem,
-                             "Install an OpenGL 3.3 driver, or set LIBGL_ALWAYS_SOFTWARE=1."));
+        lines.push_back(line("computer, OpenGL", Health::stop, machine.gl_problem, machine.gl_remedy));
     else
         lines.push_back(line("computer, OpenGL",
                              names("llvmpipe") || names("softpipe") || names("swrast") || names("software")
@@ -331,6 +349,7 @@ std::vector<DoctorLine> judge_machine(const MachineFigures& machine) {
                              machine.gl_renderer,
                              "Install the graphics card's driver: by software pictures come late, and the more so the "
                              "busier the computer is."));
+    if (machine.dark_after) lines.push_back(judge_monitors_that_go_dark(*machine.dark_after));
     std::string slow;
     for (const std::string& governor : machine.governors)
         if (governor == "powersave" || governor == "conservative") slow = governor;

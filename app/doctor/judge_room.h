@@ -7,6 +7,7 @@
 
 #include "planning_io/case/light_file.h"
 #include "planning_io/types/rig_calibration.h"
+#include "projection/monitors_kept_on.h"
 #include "projection/projector_window.h"
 #include "registration/calibration/check_drift.h"
 
@@ -116,7 +117,9 @@ struct MachineFigures {
     std::string folder;
     std::string gl_renderer;  ///< empty: no OpenGL
     std::string gl_problem;
-    std::vector<std::string> governors;  ///< of the processors, each once; empty: not told
+    std::vector<std::string> governors;                ///< of the processors, each once; empty: not told
+    std::string gl_remedy = {};                        ///< of `gl_problem`
+    std::optional<MonitorsDarkAfter> dark_after = {};  ///< empty: there is no display
 };
 
 std::vector<DoctorLine> judge_machine(const MachineFigures& machine);

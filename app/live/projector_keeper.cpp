@@ -13,11 +13,11 @@ constexpr auto kPoll = std::chrono::milliseconds(4);
 }  // namespace
 
 ProjectorKeeper::ProjectorKeeper(const std::string& monitor, const ProjectorKeeperSettings& settings)
-    : monitor_(monitor),
-      settings_(settings),
+    : settings_(settings),
       window_at_(clock_.now().count()),
       session_at_(clock_.now().count()),
       projector_(std::make_unique<ProjectorProcess>(monitor, settings.process)),
+      monitor_(projector_->monitor()),
       width_(projector_->width()),
       height_(projector_->height()),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -29,11 +29,16 @@ ProjectorKeeper::~ProjectorKeeper() {
 }
 
 Instant ProjectorKeeper::show(const RgbImage& picture, Instant valid_until) {
+    session_lives(clock_.now());
     std::unique_lock lock(mutex_);
     if (!projector_) throw DeviceError("Projector", problem_.what, problem_.remedy);
+    if (!window_alive()) {
+        projector_->go_dark();
+        throw DeviceError("Projector", "the operator's window does not answer, and nothing may be lit meanwhile",
+                          "End what else uses the computer.");
+    }
     try {
-        if (alive())
-            projector_->renew();  // a picture that comes before the lease, or right after darkness, would be lost
+        projector_->renew();  // a picture that comes before the lease, or right after darkness, would be lost
         return projector_->show(picture, valid_until);
     } catch (const Error& error) {
         lock.unlock();
@@ -57,7 +62,9 @@ void ProjectorKeeper::window_lives() {
 }
 
 void ProjectorKeeper::session_lives(Instant at) {
-    session_at_ = at.count();
+    Instant::rep before = session_at_;
+    while (before < at.count() && !session_at_.compare_exchange_weak(before, at.count())) {
+    }
 }
 
 ProjectorProblem ProjectorKeeper::problem() const {
@@ -65,10 +72,12 @@ ProjectorProblem ProjectorKeeper::problem() const {
     return problem_;
 }
 
+bool ProjectorKeeper::window_alive() const {
+    return clock_.now() - Instant(window_at_) < settings_.window_patience;
+}
+
 bool ProjectorKeeper::alive() const {
-    const Instant now = clock_.now();
-    return now - Instant(window_at_) < settings_.window_patience &&
-           now - Instant(session_at_) < settings_.session_patience;
+    return window_alive() && clock_.now() - Instant(session_at_) < settings_.session_patience;
 }
 
 void ProjectorKeeper::start_again() {

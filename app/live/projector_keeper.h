@@ -28,7 +28,8 @@ struct ProjectorProblem {
 
 /// The projector of a session: its process is watched, its lease is kept only while the operator window and the session
 /// both show signs of life (where either hangs, it is dark), and it is started again when it was lost (unplugged,
-/// moved, its process ended): dark then, until the next picture.
+/// moved, its process ended): dark then, until the next picture. On the same output then, also where it was asked for
+/// by its number.
 ///
 /// May be used from any thread.
 class ProjectorKeeper final : public Projector {
@@ -39,7 +40,8 @@ public:
 
     int width() const override { return width_; }
     int height() const override { return height_; }
-    /// Throws DeviceError while the projector is lost, or when it is found to be.
+    /// Throws DeviceError while the projector is lost, or when it is found to be; and, dark, while the operator window
+    /// does not answer, for the lease has run out then and nothing would be lit. Whoever shows is alive.
     Instant show(const RgbImage& picture, Instant valid_until) override;
     void go_dark() noexcept override;
 
@@ -53,16 +55,17 @@ public:
 
 private:
     void run(const std::stop_token& stop);
+    bool window_alive() const;
     bool alive() const;
     void start_again();
     void lose(const ProjectorProblem& problem);
 
-    std::string monitor_;
     ProjectorKeeperSettings settings_;
     SteadyClock clock_;
     std::atomic<Instant::rep> window_at_, session_at_;
     mutable std::mutex mutex_;
     std::unique_ptr<ProjectorProcess> projector_;
+    std::string monitor_;  ///< its name
     ProjectorProblem problem_;
     Instant lost_at_{};
     std::atomic<unsigned> starts_{1};

@@ -49,7 +49,7 @@ std::string headline_of(const DoctorPageModel& model) {
 
 std::string counts_of(const DoctorPageModel& model) {
     using Health = DoctorPageModel::Health;
-    return fmt::format("{} good, {} to look at, {} stop; {} s.", model.count(Health::good), model.count(Health::look),
+    return fmt::format("{} good, {} to look at, {} STOP; {} s.", model.count(Health::good), model.count(Health::look),
                        model.count(Health::stop), model.took_s);
 }
 

@@ -65,13 +65,15 @@ TEST(LightMailbox, NeverMixesTwoPictures) {
 TEST(LightMailbox, RefusesAMonitorThatItsPicturesHaveNoRoomFor) {
     LightMailbox program;
     LightMailbox projector(dup(program.descriptor()));
-    EXPECT_THROW(projector.say_ready(3840, 2401), DeviceError);
+    EXPECT_THROW(projector.say_ready(3840, 2401, "HDMI-2"), DeviceError);
     EXPECT_EQ(program.state(), LightMailbox::State::starting);
     EXPECT_THROW(program.order(RgbImage(5120, 2880), 5s), DeviceError);
     LightMailbox::Order order;
     EXPECT_FALSE(projector.take(order));
-    projector.say_ready(3840, 2400);
+    EXPECT_EQ(program.monitor(), "");
+    projector.say_ready(3840, 2400, "HDMI-2");
     EXPECT_EQ(program.state(), LightMailbox::State::ready);
+    EXPECT_EQ(program.monitor(), "HDMI-2");
     program.order(RgbImage(3840, 2400, {1, 2, 3}), 5s);
     ASSERT_TRUE(projector.take(order));
     EXPECT_EQ(order.picture.pixels.back(), (Rgb{1, 2, 3}));

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "planning_io/types/error.h"
 #include "tests/support/test_data.h"
 
 namespace planlight {
@@ -31,6 +32,21 @@ TEST(ProjectorProcess, IsNotOfTheJobThatATerminalStops) {
     const ProjectorProcess projector("any", settings);
     EXPECT_EQ(getpgid(projector.process()), projector.process());
     EXPECT_NE(getpgid(projector.process()), getpgrp());
+}
+
+// Whoever waits for a device to come back (a guided calibration) must know it for one.
+TEST(ProjectorProcess, ThatDoesNotAnswerIsADeviceThatIsLost) {
+    const test::TemporaryFolder folder;
+    ProjectorProcessSettings settings;
+    settings.program = stand_in(folder.path());
+    ProjectorProcess projector("any", settings);
+    try {
+        projector.check();  // the stand-in has never said that it is alive
+        FAIL() << "it is taken for alive";
+    } catch (const DeviceError& error) {
+        EXPECT_STREQ(error.what(), "projector process: it does not answer any more");
+        EXPECT_FALSE(error.remedy.empty());
+    }
 }
 
 }  // namespace

@@ -293,12 +293,28 @@ TEST(Doctor, TheComputer) {
     machine.gl_renderer = "llvmpipe (LLVM 15.0.6, 256 bits)";
     EXPECT_EQ(about("OpenGL", judge_machine(machine)).health, Health::look);
     machine.gl_renderer.clear();
-    machine.gl_problem = "no window can be drawn";
+    machine.gl_problem = "no window can be opened";
+    machine.gl_remedy = "Start the program in a desktop session, or set DISPLAY.";
     EXPECT_EQ(about("OpenGL", judge_machine(machine)).health, Health::stop);
+    EXPECT_EQ(about("OpenGL", judge_machine(machine)).remedy, machine.gl_remedy) << "not that of another problem";
     machine.governors = {"performance", "powersave"};
     EXPECT_EQ(about("processor", judge_machine(machine)).health, Health::look);
     machine.governors.clear();
     EXPECT_EQ(about("processor", judge_machine(machine)).health, Health::good) << "a virtual machine tells none";
+    expect_remedies(judge_machine(machine));
+}
+
+TEST(Doctor, MonitorsThatGoDarkByThemselvesStopUnlessTheyCanBeKeptOn) {
+    MachineFigures machine{std::uint64_t{80'000'000'000}, "/data", "NVIDIA T400/PCIe/SSE2", "", {"performance"}};
+    for (const DoctorLine& one : judge_machine(machine))
+        EXPECT_EQ(one.subject.find("saver"), std::string::npos) << "without a display nothing is known";
+    machine.dark_after = MonitorsDarkAfter{std::nullopt, false};
+    EXPECT_EQ(about("saver", judge_machine(machine)).health, Health::good);
+    machine.dark_after = MonitorsDarkAfter{600, true};
+    EXPECT_EQ(about("saver", judge_machine(machine)).health, Health::good);
+    EXPECT_NE(about("saver", judge_machine(machine)).said.find("600 s"), std::string::npos);
+    machine.dark_after = MonitorsDarkAfter{600, false};
+    EXPECT_EQ(about("saver", judge_machine(machine)).health, Health::stop);
     expect_remedies(judge_machine(machine));
 }
 
