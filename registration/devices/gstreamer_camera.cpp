@@ -95,6 +95,7 @@ void GstreamerCamera::open() {
     gst_object_unref(monotonic);
     gst_element_set_state(pipeline->element, GST_STATE_PLAYING);
     heard_at_ = clock_.now();
+    begun_ = false;
     pipeline_ = std::move(pipeline);
 }
 
@@ -105,9 +106,9 @@ bool GstreamerCamera::receive() {
     const Instant now = clock_.now();
     if (!sample) {
         const bool ended = gst_app_sink_is_eos(GST_APP_SINK(pipeline_->sink));
-        const Instant allowed = frames_.counts().received == 0 ? kStart : settings_.silence_allowed;
-        return !ended && now - heard_at_ < allowed;
+        return !ended && now - heard_at_ < (begun_ ? settings_.silence_allowed : kStart);
     }
+    begun_ = true;
     GstBuffer* buffer = gst_sample_get_buffer(sample.get());
     GstVideoInfo info;
     GstVideoFrame video;

@@ -51,6 +51,7 @@ private:
     FrameQueue frames_;
     std::unique_ptr<Pipeline> pipeline_;
     Instant heard_at_{}, offset_{};  ///< session's clock less the pipeline's
+    bool begun_ = false;             ///< a frame has come since it was opened last
     int width_ = 0, height_ = 0;     ///< of the first frame, and never changed
     CameraFault problem_;            ///< of the last frame, which was refused; empty: it was not
     RepeatedPicture repeated_;

@@ -75,6 +75,24 @@ TEST(GstreamerCamera, APictureThatIsSentAgainAndAgainIsAFault) {
     EXPECT_EQ(camera.frames().counts().received, 1u);
 }
 
+// A UVC camera that needs a second to its first picture, after its cable was pulled: it ends, and is opened again.
+TEST(GstreamerCamera, OneThatIsSlowToBeginComesBackAfterAFault) {
+    FrameBell bell;
+    const SteadyClock clock;
+    GstreamerSettings settings;
+    settings.pipeline =
+        "videotestsrc is-live=true pattern=snow num-buffers=60 ! video/x-raw,width=64,height=48,framerate=50/1 ! "
+        "queue min-threshold-time=800000000";
+    GstreamerCamera camera(settings, bell, clock);
+    const Instant until = clock.now() + std::chrono::seconds(60);
+    while (!camera.frames().fault() && clock.now() < until) std::this_thread::sleep_for(milliseconds(5));
+    ASSERT_TRUE(camera.frames().fault());
+    const std::size_t before = camera.frames().counts().received;
+    while (camera.frames().counts().received <= before && clock.now() < until)
+        std::this_thread::sleep_for(milliseconds(5));
+    EXPECT_GT(camera.frames().counts().received, before);
+}
+
 TEST(GstreamerCamera, APipelineThatIsNoneOrEndsIsSaid) {
     FrameBell bell;
     const SteadyClock clock;
