@@ -12,6 +12,7 @@
 
 #include "app/case_model.h"
 #include "app/console.h"
+#include "app/live/autoplay.h"
 #include "app/live/dark_at_the_end.h"
 #include "app/live/light_keeper.h"
 #include "app/live/live_session.h"
@@ -21,7 +22,6 @@
 #include "app/live/step_pictures.h"
 #include "app/live/window_meter.h"
 #include "app/windows/operator_window.h"
-#include "planning_io/files/image_file.h"
 #include "planning_io/types/error.h"
 #include "projection/projector_window.h"
 
@@ -62,34 +62,6 @@ void check_monitor(const std::string& name, const ProjectorFacts& facts) {
     }
 }
 
-/// Presses the buttons in their order as soon as each is free: the session by itself.
-class Autoplay {
-public:
-    /// That light or a match is right is a person's word: only in the simulated room is it said without one.
-    /// `resumes`: the session goes on with a match by itself, and Track is what comes next.
-    explicit Autoplay(bool says_it_is_right, bool resumes = false)
-        : says_it_is_right_(says_it_is_right), step_(resumes ? 2 : 0) {}
-
-    OperatorAction next(const OperatorModel& model) {
-        if (step_ == 0 && model.scan.enabled) return advance(OperatorAction::scan);
-        if (step_ == 1 && model.do_register.enabled) return advance(OperatorAction::do_register);
-        if (step_ == 2 && model.track.enabled) return advance(OperatorAction::track);
-        if (step_ < 3 || !says_it_is_right_ || !model.confirm || model.confirm_words == confirmed_)
-            return OperatorAction::none;
-        confirmed_ = model.confirm_words;
-        return OperatorAction::confirm;
-    }
-
-private:
-    OperatorAction advance(OperatorAction action) {
-        ++step_;
-        return action;
-    }
-    bool says_it_is_right_;
-    int step_;
-    std::string confirmed_;  ///< the words on the button that was pressed last
-};
-
 /// The light follows the patient, or is about to; a scan's does not.
 bool follows(const OperatorModel& model) {
     return model.light_on && model.may_light_item;
@@ -101,13 +73,14 @@ void take_pictures(StepPictures& pictures, OperatorWindow& window, const Operato
     if (follows(model) && !model.figures.delay_to_light_ms) return;  // the light is still being made
     const std::string taken = pictures.take(window, model);
     const auto light = taken.empty() ? nullptr : session.light().picture;
-    if (light) write_png(*light, pictures.folder() / ("light-" + taken), ReadableBy::owner);  // the name card
+    if (light) keep_or_warn(*light, pictures.folder() / ("light-" + taken));  // the name card
 }
 
 /// A projector that is lost makes the session dark once; match and markers are kept.
 void tell_of_projector(const ProjectorKeeper& projector, LiveSession& session, ProjectorWatch& watch,
-                       OperatorModel& model) {
+                       Autoplay& autoplay, OperatorModel& model) {
     if (watch.look(projector.problem(), projector.starts())) {
+        autoplay.projector_lost();
         session.post(OperatorAction::dark, AskedBy::lost_projector);
         session.look_before_light();
         model = session.model();
@@ -195,7 +168,7 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         OperatorModel model = session.model();
         say_silence(model, session.projecting(), SteadyClock().now() - session.alive_at(),
                     model.room_kind == RoomKind::real ? kSessionPatience : kSimulatedPatience);
-        if (projector) tell_of_projector(*projector, session, watch, model);
+        if (projector) tell_of_projector(*projector, session, watch, autoplay, model);
         tell_of_recording(options.recorded, begun, model);
         if (const std::string trouble = options.trouble ? options.trouble() : ""; !trouble.empty())
             model.status.details.push_back(trouble);
@@ -209,6 +182,7 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
             projector->session_lives(session.alive_at());
         }
         if (action == OperatorAction::quit) return 0;
+        autoplay.pressed(action);
         if (action != OperatorAction::none) watch.pressed(), begun = true;
         // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays
         // refused.

@@ -6,10 +6,12 @@
 #include <cctype>
 #include <utility>
 
+#include "app/console.h"
 #include "app/windows/operator_window.h"
 #include "app/windows/status_word.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/files/make_folder.h"
+#include "planning_io/types/error.h"
 
 namespace planlight {
 namespace {
@@ -37,8 +39,17 @@ std::string StepPictures::take(OperatorWindow& window, const OperatorModel& mode
     state_ = state;
     if (looks_ != kSettled) return {};
     std::string name = fmt::format("{:02d}-{}.png", ++number_, state);
-    write_png(window.screenshot(), folder_ / (begin_ + "-" + name), ReadableBy::owner);
-    return name;
+    return keep_or_warn(window.screenshot(), folder_ / (begin_ + "-" + name)) ? name : std::string{};
+}
+
+bool keep_or_warn(const RgbImage& picture, const std::filesystem::path& file) {
+    try {
+        write_png(picture, file, ReadableBy::owner);
+        return true;
+    } catch (const DiskError& error) {
+        warn(std::string(error.what()) + ". " + error.remedy);
+        return false;
+    }
 }
 
 }  // namespace planlight
