@@ -33,8 +33,8 @@ public:
     /// thread.
     void answer();
     ExaminationState state() const;
-    /// It stops, dark, before the next picture of the projector; what goes on without light (cameras that are opened)
-    /// takes a second or two more. Does nothing when it is over.
+    /// The projector is dark when this returns, and is lit no more; what goes on without light (cameras that are
+    /// opened) takes a second or two more. Does nothing when it is over.
     void end();
 
 private:
