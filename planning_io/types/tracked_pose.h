@@ -14,7 +14,7 @@ struct TrackedPose {
     Instant at{};                                    ///< mid-exposure of the frames it was measured in
     int markers_left = 0, markers_right = 0;         ///< used, per camera
     double residual_px = 0;                          ///< rms reprojection over both pictures
-    double predicted_error_mm = 0;                   ///< one sigma, of the place of the markers' middle
+    double predicted_error_mm = 0;                   ///< one sigma, the largest where the pose counts
     double bound_95_mm = 0;                          ///< smaller than this in 95 of 100 cases; 0: not known
     std::string reason;                              ///< why there is no pose; empty when there is one
 };

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
+#include <utility>
 
-#include "registration/tracking/pose_uncertainty.h"
+#include "registration/tracking/largest_error.h"
 
 namespace planlight {
 namespace {
@@ -18,6 +21,8 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 constexpr double kHuber = 3;        // sigmas
 constexpr double kAgreement = 3.5;  // reduced chi-square up to which the markers agree
 constexpr double kCalibrationPx = 0.07;
+constexpr double kRivalsApart_mm = 0.4;  // where it counts: farther, they are not one answer
+constexpr double kNearLine = 0.2;        // spread across the line that the markers lie along, of that along it
 
 struct Linearised {
     Matrix6 N = Matrix6::Zero();
@@ -97,11 +102,11 @@ double deviation_mm(const RigCalibration& rig, const std::vector<PatientMarker>&
 
 struct LeftOut {
     int marker = -1;
-    PoseFit fit;
+    std::optional<PoseFit> fit;  ///< empty: too few sightings without it to check
     double chi = 0;
 };
 
-/// The fits with each marker left out, the best first.
+/// The fits with each marker left out, the best first; those that cannot be checked last.
 std::vector<LeftOut> leave_one_out(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
                                    const std::vector<Sighting>& sightings, const RigidTransform& start) {
     std::set<int> seen;
@@ -109,12 +114,67 @@ std::vector<LeftOut> leave_one_out(const RigCalibration& rig, const std::vector<
     std::vector<LeftOut> fits;
     for (const int marker : seen) {
         const auto rest = without(sightings, marker);
-        if (rest.size() < 4) continue;
-        if (const auto fit = fit_pose(rig, markers, rest, start))
-            fits.push_back({marker, *fit, reduced_chi_square(*fit, rest.size())});
+        LeftOut one{marker, std::nullopt, std::numeric_limits<double>::infinity()};
+        if (rest.size() >= 4) one.fit = fit_pose(rig, markers, rest, start);
+        if (one.fit) one.chi = reduced_chi_square(*one.fit, rest.size());
+        fits.push_back(one);
     }
     std::sort(fits.begin(), fits.end(), [](const LeftOut& a, const LeftOut& b) { return a.chi < b.chi; });
     return fits;
+}
+
+/// How a disagreement is explained: by the marker without which the others agree.
+struct Explanation {
+    int marker = -1;
+    RigidTransform pose = RigidTransform::Identity();  ///< without it
+    int rival = -1;                                    ///< another that explains it as well; -1: none
+    double apart_mm = 0;                               ///< the pose without the rival, at the places that count
+};
+
+/// Empty when leaving out one marker does not mend it. Of several rivals the one whose pose is farthest; one that
+/// cannot be checked is infinitely far.
+std::optional<Explanation> explain(const std::vector<LeftOut>& fits, double chi_of_all,
+                                   const Eigen::Vector3d& middle_in_patient,
+                                   const std::vector<Eigen::Vector3d>& places_in_patient) {
+    if (!fits[0].fit || fits[0].chi >= 0.5 * chi_of_all) return std::nullopt;
+    Explanation result{fits[0].marker, fits[0].fit->rig_from_patient};
+    for (std::size_t k = 1; k < fits.size(); ++k) {
+        if (fits[k].fit && fits[k].chi >= std::max(kAgreement, 1.5 * fits[0].chi)) continue;
+        const double apart_mm = fits[k].fit ? largest_distance(result.pose, fits[k].fit->rig_from_patient,
+                                                               middle_in_patient, places_in_patient)
+                                            : std::numeric_limits<double>::infinity();
+        if (result.rival < 0 || apart_mm > result.apart_mm) result.rival = fits[k].marker, result.apart_mm = apart_mm;
+    }
+    return result;
+}
+
+Eigen::Vector3d middle_of(const std::vector<PatientMarker>& markers) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const PatientMarker& m : markers) sum += m.centre_in_patient;
+    return sum / static_cast<double>(markers.size());
+}
+
+bool nearly_in_line(const std::vector<PatientMarker>& markers, const std::vector<Sighting>& sightings) {
+    const Eigen::Vector3d middle = centroid(markers, sightings);
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const Sighting& s : sightings) {
+        const Eigen::Vector3d r = markers[static_cast<std::size_t>(s.marker)].centre_in_patient - middle;
+        spread += r * r.transpose();
+    }
+    const Eigen::Vector3d squares =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread, Eigen::EigenvaluesOnly).eigenvalues();
+    return squares[1] < kNearLine * kNearLine * squares[2];
+}
+
+/// Why a pose of this error is refused.
+std::string too_uncertain(const std::vector<PatientMarker>& markers, const std::vector<Sighting>& sightings,
+                          double error_mm, double at_most_mm) {
+    if (nearly_in_line(markers, sightings))
+        return "the markers seen lie nearly in one line, about which the pose may turn: uncover another beside it, or "
+               "paste one there and scan again";
+    if (!std::isfinite(error_mm)) return "the markers seen do not determine a pose";
+    return fmt::format("the markers seen leave the pose uncertain by {:.2f} mm; at most {:.2f} is allowed", error_mm,
+                       at_most_mm);
 }
 
 }  // namespace
@@ -163,57 +223,53 @@ std::optional<PoseFit> fit_pose(const RigCalibration& rig, const std::vector<Pat
 
 CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
                              std::vector<Sighting> sightings, const RigidTransform& start,
-                             const TrackingSettings& settings) {
+                             const TrackingSettings& settings, const std::vector<Eigen::Vector3d>& places_in_patient) {
     CheckedPose result;
+    const auto refused = [&result](std::string reason) {
+        result.reason = std::move(reason);
+        return result;
+    };
     const int all = static_cast<int>(markers.size());
+    double rivals_apart_mm = 0;
     while (true) {
         const int seen = distinct_markers(sightings);
-        if (seen < settings.min_markers) {
-            result.reason = fmt::format("only {} of {} markers seen{}; {} are needed", seen, all,
-                                        result.doubts.empty() ? "" : " in their place", settings.min_markers);
-            return result;
-        }
-        if (sightings.size() < 4) {
-            result.reason = fmt::format("{} markers, each seen by one camera only: nothing to check the pose by", seen);
-            return result;
-        }
+        if (seen < settings.min_markers)
+            return refused(fmt::format("only {} of {} markers seen{}; {} are needed", seen, all,
+                                       result.doubts.empty() ? "" : " in their place", settings.min_markers));
+        if (sightings.size() < 4)
+            return refused(fmt::format("{} markers, each seen by one camera only: nothing to check the pose by", seen));
         auto fit = fit_pose(rig, markers, sightings, start);
-        if (!fit) {
-            result.reason = "the markers seen do not determine a pose";
-            return result;
-        }
-        const bool agree = reduced_chi_square(*fit, sightings.size()) < kAgreement;
-        if (!agree && seen > settings.min_markers) {
-            const auto fits = leave_one_out(rig, markers, sightings, fit->rig_from_patient);
-            const bool explained = !fits.empty() && fits[0].chi < 0.5 * reduced_chi_square(*fit, sightings.size());
-            const bool rival = fits.size() > 1 && fits[1].chi < std::max(kAgreement, 1.5 * fits[0].chi);
-            if (explained && rival && fit->residual_px > settings.max_residual_px) {
-                result.reason = fmt::format("a marker has moved, but it cannot be told whether {} or {}",
-                                            fits[0].marker + 1, fits[1].marker + 1);
-                return result;
-            }
-            if (explained) {
-                const double mm = deviation_mm(rig, markers, sightings, fits[0].marker, fits[0].fit.rig_from_patient);
-                result.doubts.push_back({fits[0].marker, mm});
-                sightings = without(sightings, fits[0].marker);
+        if (!fit) return refused("the markers seen do not determine a pose");
+        const double chi = reduced_chi_square(*fit, sightings.size());
+        if (chi >= kAgreement) {
+            std::vector<LeftOut> fits;
+            if (seen > settings.min_markers) fits = leave_one_out(rig, markers, sightings, fit->rig_from_patient);
+            if (fits.empty() || !fits[0].fit)
+                return refused(
+                    fmt::format("the {} markers seen do not agree, and so few cannot tell which of them has "
+                                "moved: uncover another, or scan again",
+                                seen));
+            if (const auto found = explain(fits, chi, middle_of(markers), places_in_patient)) {
+                if (found->rival >= 0 && !(found->apart_mm <= kRivalsApart_mm))
+                    return refused(fmt::format("a marker has moved, but it cannot be told whether {} or {}",
+                                               found->marker + 1, found->rival + 1));
+                rivals_apart_mm += found->apart_mm;
+                result.doubts.push_back(
+                    {found->marker, deviation_mm(rig, markers, sightings, found->marker, found->pose)});
+                sightings = without(sightings, found->marker);
                 continue;
             }
         }
-        if (fit->residual_px > settings.max_residual_px) {
-            result.reason = fmt::format("the markers do not fit their places: {:.2f} px rms, at most {:.2f} is allowed",
-                                        fit->residual_px, settings.max_residual_px);
-            return result;
-        }
-        const PoseUncertainty uncertain = pose_uncertainty(rig, markers, sightings, fit->rig_from_patient);
-        const double inflation = std::sqrt(std::max(1.0, reduced_chi_square(*fit, sightings.size())));
-        fit->error_mm = inflation * uncertain.sigma_mm;
-        fit->bound_95_mm = inflation * uncertain.bound_95_mm;
-        if (!(fit->error_mm <= settings.max_predicted_error_mm)) {
-            result.reason =
-                fmt::format("the markers seen leave the pose uncertain by {:.2f} mm; at most {:.2f} is allowed",
-                            fit->error_mm, settings.max_predicted_error_mm);
-            return result;
-        }
+        if (fit->residual_px > settings.max_residual_px)
+            return refused(fmt::format("the markers do not fit their places: {:.2f} px rms, at most {:.2f} is allowed",
+                                       fit->residual_px, settings.max_residual_px));
+        fit->uncertainty = pose_uncertainty(rig, markers, sightings, fit->rig_from_patient);
+        fit->uncertainty.of_turn_and_shift *= std::max(1.0, chi);
+        const PredictedError largest = largest_error(fit->uncertainty, fit->rig_from_patient, places_in_patient);
+        fit->error_mm = largest.rms_mm + rivals_apart_mm;
+        fit->bound_95_mm = largest.bound_95_mm + rivals_apart_mm;
+        if (!(fit->error_mm <= settings.max_predicted_error_mm))
+            return refused(too_uncertain(markers, sightings, fit->error_mm, settings.max_predicted_error_mm));
         result.fit = fit;
         result.used = sightings;
         return result;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "planning_io/types/rig_calibration.h"
+#include "registration/tracking/pose_uncertainty.h"
 #include "registration/tracking/track_patient.h"
 
 namespace planlight {
@@ -22,7 +23,9 @@ struct PoseFit {
     RigidTransform rig_from_patient = RigidTransform::Identity();
     double residual_px = 0;  ///< rms distance in the picture
     double chi_square = 0;   ///< by the sightings' sigmas
-    /// Of the place of the markers' middle, in space (`pose_uncertainty`); `fit_pose_checked` alone works them out.
+    /// Wider where the sightings agree less than their sigmas say. `fit_pose_checked` alone works it out, and the rest.
+    PoseUncertainty uncertainty;
+    /// One standard deviation in space, and the 95 % bound: the largest over the places that count (`largest_error`).
     double error_mm = 0, bound_95_mm = 0;
 };
 
@@ -44,11 +47,15 @@ struct CheckedPose {
 };
 
 /// `fit_pose`, then leave-one-out: while the markers do not agree within their noise, the one without which the others
-/// agree is left out. Refused when too few remain, when no marker explains the disagreement, or when two different ones
-/// would.
+/// agree is left out. Refused when too few remain, or so few that none can be left out to see which does not agree;
+/// when two different markers explain the disagreement and the poses without them lie apart by more than 0.4 mm at the
+/// places that count (closer, that distance is added to the bound); when the residual is too large; and when the pose
+/// is too uncertain at those places: the plan's (`PatientTracker::set_places`), or without any `kPlanReach_mm` all
+/// round.
 CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
                              std::vector<Sighting> sightings, const RigidTransform& start,
-                             const TrackingSettings& settings);
+                             const TrackingSettings& settings,
+                             const std::vector<Eigen::Vector3d>& places_in_patient = {});
 
 /// How many different markers the sightings show.
 int distinct_markers(const std::vector<Sighting>& sightings);

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "planning_io/types/pose_covariance.h"
+#include "registration/tracking/fit_pose.h"
 
 namespace planlight {
 namespace {
@@ -16,8 +16,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Matrix23 = Eigen::Matrix<double, 2, 3>;
-using Matrix32 = Eigen::Matrix<double, 3, 2>;
+using Matrix63 = Eigen::Matrix<double, 6, 3>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 // What a good calibration (0.1 px rms over all devices) leaves, one sigma each; measured on the simulated rooms
 // (ACCURACY.md, measure_tracking). Larger where the calibration says it is worse.
@@ -128,7 +129,7 @@ struct Seen {
     const Sighting* sighting = nullptr;
     Matrix23 pixel_by_point;
     Eigen::Matrix<double, 2, 6> J;
-    Matrix32 middle_by_pixel;  ///< how the fit's middle follows the sighting
+    Eigen::Matrix<double, 6, 2> twist_by_pixel;  ///< how the fit's turn and shift follow the sighting
 };
 
 }  // namespace
@@ -136,8 +137,8 @@ struct Seen {
 PoseUncertainty pose_uncertainty(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
                                  const std::vector<Sighting>& sightings, const RigidTransform& pose) {
     PoseUncertainty result;
-    result.sigma_mm = result.bound_95_mm = std::numeric_limits<double>::infinity();
-    Vector3d middle = Vector3d::Zero();
+    result.of_turn_and_shift.setConstant(std::numeric_limits<double>::infinity());
+    Vector3d& middle = result.middle_in_rig;
     for (const PatientMarker& m : markers) middle += pose * m.centre_in_patient / static_cast<double>(markers.size());
     Matrix6 N = Matrix6::Zero();
     std::vector<Seen> seen;
@@ -153,20 +154,20 @@ PoseUncertainty pose_uncertainty(const RigCalibration& rig, const std::vector<Pa
     const Eigen::LDLT<Matrix6> solver(N);
     if (solver.info() != Eigen::Success || !(solver.vectorD().minCoeff() > 0)) return result;
     for (Seen& s : seen)
-        s.middle_by_pixel =
-            (solver.solve(s.J.transpose()) / std::pow(sighting_sigma_px(s.sighting->seen), 2)).bottomRows<3>();
+        s.twist_by_pixel = solver.solve(s.J.transpose()) / std::pow(sighting_sigma_px(s.sighting->seen), 2);
 
-    Matrix3d& C = result.covariance_mm2;
+    Matrix6& C = result.of_turn_and_shift;
+    C.setZero();
     const double turned_rad = angle_between(pose, RigidTransform::Identity());
     for (const Seen& s : seen)
-        C += s.middle_by_pixel * s.middle_by_pixel.transpose() * std::pow(noise_px(s.sighting->seen, turned_rad), 2);
+        C += s.twist_by_pixel * s.twist_by_pixel.transpose() * std::pow(noise_px(s.sighting->seen, turned_rad), 2);
     std::vector<Reference> references;
     for (std::size_t k = 0; k < markers.size(); ++k) {
         references.push_back(reference_of(rig, markers[k]));
-        Matrix3d by_place = Matrix3d::Zero();
+        Matrix63 by_place = Matrix63::Zero();
         for (const Seen& s : seen)
             if (s.sighting->marker == static_cast<int>(k))
-                by_place -= s.middle_by_pixel * s.pixel_by_point * pose.linear();
+                by_place -= s.twist_by_pixel * s.pixel_by_point * pose.linear();
         C += by_place * references.back().covariance_mm2 * by_place.transpose();
     }
     const double scale = rig.reprojection_rms_px > 0 ? std::clamp(rig.reprojection_rms_px / kUsualRms_px, 0.7, 5.) : 1;
@@ -179,21 +180,16 @@ PoseUncertainty pose_uncertainty(const RigCalibration& rig, const std::vector<Pa
             for (const Reference& r : references)
                 moved.push_back(-(r.from_pixels * (r.pixel_by_point[left ? 0 : 1].transpose() *
                                                    pixel_error(camera, wrong, r.p_in_rig))));
-            Vector3d error = Vector3d::Zero();
+            Vector6 error = Vector6::Zero();
             for (const Seen& s : seen) {
                 const auto k = static_cast<std::size_t>(s.sighting->marker);
                 Vector2d pixel = s.pixel_by_point * (pose.linear() * moved[k]);
                 if (s.sighting->left == left) pixel += pixel_error(camera, wrong, pose * markers[k].centre_in_patient);
-                error -= s.middle_by_pixel * pixel;
+                error -= s.twist_by_pixel * pixel;
             }
             C += error * error.transpose();
         }
     }
-    PoseCovariance shift;
-    shift.of_turn_and_shift.bottomRightCorner<3, 3>() = C;
-    const PredictedError predicted = predicted_error(shift, Vector3d::Zero());
-    result.sigma_mm = predicted.rms_mm;
-    result.bound_95_mm = predicted.bound_95_mm;
     return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "planning_io/types/error.h"
 #include "registration/tracking/fit_pose.h"
+#include "registration/tracking/largest_error.h"
 #include "registration/tracking/match_constellation.h"
 #include "registration/tracking/pair_markers.h"
 
@@ -91,6 +92,8 @@ const std::vector<PatientMarker>& PatientTracker::set_reference(const StereoFram
 
 void PatientTracker::set_reference(std::vector<PatientMarker> markers) {
     markers_ = std::move(markers);
+    places_.clear();
+    uncertainty_.reset();
     seen_left_.clear();
     seen_right_.clear();
     doubts_.clear();
@@ -99,6 +102,10 @@ void PatientTracker::set_reference(std::vector<PatientMarker> markers) {
     last_.reset();
     before_last_.reset();
     last_known_.reset();
+}
+
+void PatientTracker::set_places(const std::vector<Eigen::Vector3d>& places_in_patient) {
+    places_ = outermost(places_in_patient);
 }
 
 Eigen::Vector3d PatientTracker::centroid() const {
@@ -143,7 +150,7 @@ PatientTracker::Attempt PatientTracker::follow(const StereoFrame& frame) {
             (is_left ? attempt.left : attempt.right).push_back({s.seen, s.marker});
         }
     }
-    attempt.checked = fit_pose_checked(rig_, markers_, sightings, expected, settings_);
+    attempt.checked = fit_pose_checked(rig_, markers_, sightings, expected, settings_, places_);
     if (attempt.checked.fit) look_again(frame, attempt);
     return attempt;
 }
@@ -172,8 +179,8 @@ void PatientTracker::look_again(const StereoFrame& frame, Attempt& attempt) cons
                 const auto pixel = project(camera, p);
                 if (!pixel || !in_picture(camera, *pixel)) continue;
                 const double px_per_mm = camera.focal_x / (camera.device_from_rig * p).z();
-                const double reach_px =
-                    std::clamp(2 * attempt.checked.fit->bound_95_mm * px_per_mm, kLeast_px, kMost_px);
+                const double bound_mm = predicted_error(attempt.checked.fit->uncertainty, p).bound_95_mm;
+                const double reach_px = std::clamp(2 * bound_mm * px_per_mm, kLeast_px, kMost_px);
                 const double r = radius[k] > 0 ? radius[k] : expected_radius_px(camera, p, settings_.design);
                 const auto seen =
                     measure_marker(is_left ? frame.left : frame.right, *pixel, r, reach_px, settings_.markers);
@@ -182,7 +189,7 @@ void PatientTracker::look_again(const StereoFrame& frame, Attempt& attempt) cons
         }
         if (more.empty()) return;
         sightings.insert(sightings.end(), more.begin(), more.end());
-        CheckedPose better = fit_pose_checked(rig_, markers_, sightings, pose, settings_);
+        CheckedPose better = fit_pose_checked(rig_, markers_, sightings, pose, settings_, places_);
         if (!better.fit || better.used.size() <= attempt.checked.used.size()) return;
         better.doubts.insert(better.doubts.end(), attempt.checked.doubts.begin(), attempt.checked.doubts.end());
         attempt.checked = std::move(better);
@@ -206,7 +213,8 @@ PatientTracker::Attempt PatientTracker::search(const StereoFrame& frame) {
     const auto match = match_constellation(rig_, markers_, left, right, last_known_, settings_);
     attempt.checked.reason = match.reason;
     if (match.rig_from_patient)
-        attempt.checked = fit_pose_checked(rig_, markers_, match.sightings, *match.rig_from_patient, settings_);
+        attempt.checked =
+            fit_pose_checked(rig_, markers_, match.sightings, *match.rig_from_patient, settings_, places_);
     if (attempt.checked.fit && distinct_markers(attempt.checked.used) < match.needed) {
         attempt.checked.fit.reset();
         attempt.checked.reason = "the discs seen are not in the arrangement of the markers";
@@ -248,6 +256,7 @@ TrackedPose PatientTracker::update(const StereoFrame& frame) {
             attempt = std::move(whole), followed = false;
     }
     note_seen(attempt);
+    uncertainty_.reset();
     if (!attempt.checked.fit) {
         pose.reason = attempt.checked.reason;
         last_.reset();
@@ -256,6 +265,7 @@ TrackedPose PatientTracker::update(const StereoFrame& frame) {
     }
     const PoseFit& fit = *attempt.checked.fit;
     pose.rig_from_patient = last_known_ = fit.rig_from_patient;
+    uncertainty_ = fit.uncertainty;
     pose.residual_px = fit.residual_px;
     pose.predicted_error_mm = fit.error_mm;
     pose.bound_95_mm = fit.bound_95_mm;

@@ -7,6 +7,7 @@
 #include "planning_io/types/tracked_pose.h"
 #include "registration/devices/stereo_camera.h"
 #include "registration/tracking/find_markers.h"
+#include "registration/tracking/pose_uncertainty.h"
 
 namespace planlight {
 
@@ -18,7 +19,7 @@ struct TrackingSettings {
     double max_residual_px = 0.5;       ///< rms above which there is no pose
     double max_epipolar_px = 1.5;       ///< when the markers of both pictures are paired
     double search_px = 40;              ///< around the predicted place
-    double max_predicted_error_mm = 1;  ///< one sigma at the markers' centroid above which there is no pose
+    double max_predicted_error_mm = 1;  ///< one sigma, the largest where it counts, above which there is no pose
 };
 
 /// A marker that does not stand where it stood against the others: it slipped, or something else was taken for it.
@@ -45,6 +46,11 @@ public:
     /// As above, from markers of an earlier session or a file.
     void set_reference(std::vector<PatientMarker> markers);
 
+    /// Where the pose counts: the plan's points, in patient. What a pose states and is refused by
+    /// (`predicted_error_mm`, `bound_95_mm`) is the largest over them; without any, over a sphere of 100 mm about the
+    /// markers' middle. A new reference forgets them: they are in its frame.
+    void set_places(const std::vector<Eigen::Vector3d>& places_in_patient);
+
     /// The pose in this frame, by minimising the reprojection in both pictures at once. A lost marker is survived; too
     /// few give no pose, and the next frame is searched whole.
     TrackedPose update(const StereoFrame& frame);
@@ -61,6 +67,9 @@ public:
     /// The markers that the last pose was made without because they have moved against the others.
     const std::vector<MarkerDoubt>& doubts() const { return doubts_; }
 
+    /// Of the last pose, everywhere (`predicted_error` in largest_error.h); empty when there was none.
+    const std::optional<PoseUncertainty>& uncertainty() const { return uncertainty_; }
+
 private:
     struct Attempt;
     Attempt follow(const StereoFrame& frame);
@@ -74,6 +83,8 @@ private:
     RigCalibration rig_;
     TrackingSettings settings_;
     std::vector<PatientMarker> markers_;
+    std::vector<Eigen::Vector3d> places_;
+    std::optional<PoseUncertainty> uncertainty_;
     std::vector<Seen> seen_left_, seen_right_;
     std::vector<MarkerDoubt> doubts_;
     std::vector<double> radius_left_px_, radius_right_px_;  ///< per marker, as last seen; 0 when never

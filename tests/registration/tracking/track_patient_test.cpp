@@ -9,6 +9,7 @@
 
 #include "marker_scene.h"
 #include "planning_io/types/error.h"
+#include "registration/tracking/largest_error.h"
 
 namespace planlight::test {
 namespace {
@@ -265,6 +266,41 @@ TEST(PatientTracker, GivesNoPoseWhenOneOfThreeMarkersSlipped) {
     const TrackedPose pose = t.see(stickers);
     EXPECT_FALSE(pose.rig_from_patient);
     EXPECT_FALSE(pose.reason.empty());
+}
+
+// At the markers' middle a pose is surest, at a plan far from them the turn counts; a new reference is another frame.
+TEST(PatientTracker, StatesItsErrorWhereThePlanIs) {
+    Tracked t(paper_rig());
+    const TrackedPose all_round = t.see(stickers_in_rig());
+    ASSERT_TRUE(t.tracker.uncertainty());
+    const PoseUncertainty uncertainty = *t.tracker.uncertainty();
+    const Eigen::Vector3d middle = uncertainty.middle_in_rig, far = middle + Eigen::Vector3d(0, 60, 40);
+    t.tracker.set_places({middle});
+    const TrackedPose at_middle = t.see(stickers_in_rig());
+    t.tracker.set_places({middle, far});
+    const TrackedPose at_plan = t.see(stickers_in_rig());
+    EXPECT_NEAR(at_middle.bound_95_mm, predicted_error(uncertainty, middle).bound_95_mm, 0.01);
+    EXPECT_NEAR(at_plan.bound_95_mm, predicted_error(uncertainty, far).bound_95_mm, 0.01);
+    EXPECT_LT(1.5 * at_middle.bound_95_mm, at_plan.bound_95_mm);
+    EXPECT_LT(at_plan.bound_95_mm, all_round.bound_95_mm);
+    t.tracker.set_reference(render_frame(t.rig, stickers_in_rig(), {}, milliseconds(500), t.random));
+    EXPECT_FALSE(t.tracker.uncertainty());
+    EXPECT_NEAR(t.see(stickers_in_rig(), 600).bound_95_mm, all_round.bound_95_mm, 0.03);
+}
+
+TEST(PatientTracker, GivesNoPoseWhileTheMarkersInViewLieInOneLine) {
+    Tracked t(paper_rig());
+    std::vector<Sticker> stickers;
+    for (const double x : {-40., 0., 32.}) stickers.push_back({{x, 0.6 * (x == 0), -75}, {0, 0, -1}});
+    stickers.push_back({{5, 40, -70}, {0, 0, -1}});
+    const RigidTransform rig_from_stickers = rig_from_head();
+    stickers = moved(rig_from_stickers, stickers);
+    ASSERT_EQ(t.tracker.set_reference(render_frame(t.rig, stickers, {}, {}, t.random)).size(), 4u);
+    EXPECT_TRUE(t.see(stickers).rig_from_patient);
+    stickers[3].covered = true;
+    const TrackedPose pose = t.see(stickers);
+    EXPECT_FALSE(pose.rig_from_patient);
+    EXPECT_TRUE(pose.reason.starts_with("the markers seen lie nearly in one line")) << pose.reason;
 }
 
 TEST(PatientTracker, WithoutMarkersHasNoReferenceAndSaysSo) {
