@@ -19,7 +19,7 @@ struct OverlaySettings {
     /// From the beginning of a step (not from the moment of its pose) to light, for the prediction, until the
     /// projector's own promises of the last pictures tell it.
     Instant light_delay = std::chrono::milliseconds(25);
-    double max_predicted_error_mm = 1.0;  ///< above: dark
+    double max_predicted_error_mm = 1.0;  ///< one sigma where the pose counts; above: dark
     bool predict = true;
     PredictionSettings prediction;
     /// Light that comes later than `prediction.max_ahead` after its pose is dark where the head gets farther than this
