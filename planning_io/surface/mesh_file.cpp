@@ -1,7 +1,10 @@
 #include "planning_io/surface/mesh_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <tuple>
 
 #include "planning_io/files/content_hash.h"
 #include "planning_io/files/safe_write.h"
@@ -66,10 +69,15 @@ void check_length(const Column& column, std::size_t count, const fs::path& file,
                          "Give one value for each point, or none.");
 }
 
-/// The column, which must be there and finite.
-const std::vector<double>& column(const Ply& ply, const char* name, const fs::path& file) {
+const std::vector<double>& any_column(const Ply& ply, const char* name, const fs::path& file) {
     const auto* values = ply.column(name);
     if (!values) damaged(file, std::string("has no column \"") + name + "\"");
+    return *values;
+}
+
+/// The column, which must be there and finite.
+const std::vector<double>& column(const Ply& ply, const char* name, const fs::path& file) {
+    const auto* values = &any_column(ply, name, file);
     for (const double value : *values)
         if (!std::isfinite(value))
             throw InputError(file, std::string("has a value in \"") + name + "\" that is not a finite number",
@@ -83,6 +91,60 @@ std::vector<Eigen::Vector3d> vectors(const Ply& ply, std::array<const char*, 3> 
     std::vector<Eigen::Vector3d> result(ply.vertices);
     for (std::size_t i = 0; i < result.size(); ++i) result[i] = {sign_xy * x[i], sign_xy * y[i], z[i]};
     return result;
+}
+
+/// Of unit length; zero where there is none. Empty where most points have none.
+std::vector<Eigen::Vector3d> normals_of(const Ply& ply, const fs::path& file) {
+    constexpr double kUnit = 1e-4;  // off it by less: as it was written, to the last digit
+    const auto &x = any_column(ply, "nx", file), &y = any_column(ply, "ny", file), &z = any_column(ply, "nz", file);
+    std::vector<Eigen::Vector3d> normals(ply.vertices, Eigen::Vector3d::Zero());
+    std::size_t there = 0;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        const Eigen::Vector3d n(x[i], y[i], z[i]);
+        const double length = n.stableNorm();
+        const bool known = std::isfinite(length) && length > 0;
+        if (known) normals[i] = std::abs(length - 1) < kUnit ? n : Eigen::Vector3d(n / length);
+        there += known ? 1 : 0;
+    }
+    if (2 * there < normals.size()) normals.clear();
+    return normals;
+}
+
+/// Keeps the values of the points that are kept, in their order.
+template <class Column>
+void keep(const std::vector<char>& kept, Column& values) {
+    if (values.size() != kept.size()) return;
+    std::size_t to = 0;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+        if (kept[i]) values[to++] = values[i];
+    values.resize(to);
+}
+
+void leave_out_unmeasured(PointCloud& cloud, PointsLeftOut& left_out) {
+    const auto& points = cloud.points_in_rig;
+    const bool has_normals = cloud.normals_in_rig.size() == cloud.size();
+    std::vector<std::size_t> order(points.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        const auto &p = points[a], &q = points[b];
+        return std::tie(p.x(), p.y(), p.z(), a) < std::tie(q.x(), q.y(), q.z(), b);
+    });
+    std::vector<char> kept(points.size(), 1);
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const std::size_t i = order[k];
+        std::size_t* const why = points[i].isZero(0)                                ? &left_out.at_origin
+                                 : k > 0 && points[i] == points[order[k - 1]]       ? &left_out.repeated
+                                 : has_normals && cloud.normals_in_rig[i].isZero(0) ? &left_out.without_normal
+                                                                                    : nullptr;
+        if (!why) continue;
+        ++*why;
+        kept[i] = 0;
+    }
+    if (left_out.all() == 0) return;
+    keep(kept, cloud.sigma_mm);
+    keep(kept, cloud.pixels_in_projector);
+    keep(kept, cloud.normals_in_rig);
+    keep(kept, cloud.points_in_rig);
 }
 
 }  // namespace
@@ -163,7 +225,8 @@ void write_cloud(const PointCloud& cloud, const fs::path& file,
     rows.write(header + "end_header\n", file);
 }
 
-PointCloud read_cloud(const fs::path& file, const CloudOrigin& origin, std::vector<std::string>* comments) {
+PointCloud read_cloud(const fs::path& file, const CloudOrigin& origin, std::vector<std::string>* comments,
+                      PointsLeftOut* left_out) {
     const Ply ply = parse_ply(read_whole(file), file);
     if (comments) *comments = ply.comments;
     if (!origin.in_rig && !ply.says("FRAME=rig"))
@@ -172,13 +235,15 @@ PointCloud read_cloud(const fs::path& file, const CloudOrigin& origin, std::vect
     PointCloud cloud;
     cloud.points_in_rig = vectors(ply, {"x", "y", "z"}, 1, file);
     for (auto& p : cloud.points_in_rig) p *= origin.unit_mm;
-    if (ply.column("nx")) cloud.normals_in_rig = vectors(ply, {"nx", "ny", "nz"}, 1, file);
+    if (ply.column("nx")) cloud.normals_in_rig = normals_of(ply, file);
     if (ply.column("sigma"))
         for (const double sigma : column(ply, "sigma", file)) cloud.sigma_mm.push_back(static_cast<float>(sigma));
     if (ply.column("projector_x")) {
         const auto &x = column(ply, "projector_x", file), &y = column(ply, "projector_y", file);
         for (std::size_t i = 0; i < x.size(); ++i) cloud.pixels_in_projector.emplace_back(x[i], y[i]);
     }
+    PointsLeftOut none;
+    leave_out_unmeasured(cloud, left_out ? *left_out : none);
     return cloud;
 }
 

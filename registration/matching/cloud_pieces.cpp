@@ -86,6 +86,14 @@ Cells gather(const PointCloud& cloud, std::vector<int>& cell_of_point) {
     return all;
 }
 
+/// A heap of points at one place, as what was not measured is at the origin, does not say how dense the scan is.
+int most_to_count(const Cells& all) {
+    constexpr std::size_t kTimesMean = 8;
+    std::size_t points = 0;
+    for (const CloudCell& cell : all.cells) points += static_cast<std::size_t>(cell.points);
+    return static_cast<int>(1 + kTimesMean * points / std::max<std::size_t>(1, all.cells.size()));
+}
+
 /// Few points round it, or more than 3 mm off the surface of the cells round it.
 void mark_strays(Cells& all) {
     constexpr double kFew = 0.2;
@@ -93,6 +101,7 @@ void mark_strays(Cells& all) {
     std::vector<int> around(all.cells.size());
     std::vector<char> off(all.cells.size(), 0);
     std::vector<int> as_seen;
+    const int most = most_to_count(all);
     for (std::size_t c = 0; c < all.cells.size(); ++c) {
         const CloudCell& cell = all.cells[c];
         Vector3f sum = cell.position * static_cast<float>(cell.points), normals = all.normal_sum[c];
@@ -106,7 +115,7 @@ void mark_strays(Cells& all) {
         const float length = normals.norm();
         off[c] =
             length > 0 && std::abs((cell.position - sum / static_cast<float>(count)).dot(normals)) >= kOff_mm * length;
-        for (int i = 0; i < cell.points; ++i) as_seen.push_back(count);
+        for (int i = 0; i < std::min(cell.points, most); ++i) as_seen.push_back(count);
     }
     if (as_seen.empty()) return;
     const auto middle = as_seen.begin() + static_cast<std::ptrdiff_t>(as_seen.size() / 2);

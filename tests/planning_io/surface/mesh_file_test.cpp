@@ -93,5 +93,48 @@ TEST(CloudFile, ReadsBackWithAndWithoutItsOptionalColumns) {
     EXPECT_THROW(read_mesh(folder.path() / "full.ply"), InputError);
 }
 
+// Other programs write normals of any length: a good scan was refused as one without a point on a surface.
+TEST(CloudFile, NormalsAreBroughtToUnitLengthAndMissingOnesAreNone) {
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "cloud.ply";
+    const auto write = [&](const std::string& rows, int count) {
+        std::string header = "ply\nformat ascii 1.0\ncomment FRAME=rig\nelement vertex " + std::to_string(count) + "\n";
+        for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "sigma"})
+            header += std::string("property float ") + name + "\n";
+        write_safely(file, header + "end_header\n" + rows);
+    };
+    write("1 2 3  0 0 -0.25  0.1\n4 5 6  0 3e-30 0  0.2\n7 8 9  120 0 160  0.3\n", 3);
+    const PointCloud scaled = read_cloud(file);
+    ASSERT_EQ(scaled.normals_in_rig.size(), 3U);
+    EXPECT_LT((scaled.normals_in_rig[0] - Vector3d(0, 0, -1)).norm(), 1e-12);
+    EXPECT_LT((scaled.normals_in_rig[1] - Vector3d(0, 1, 0)).norm(), 1e-12);
+    EXPECT_LT((scaled.normals_in_rig[2] - Vector3d(0.6, 0, 0.8)).norm(), 1e-12);
+    PointsLeftOut left_out;
+    write("1 2 3  0 0 -1  0.1\n4 5 6  0 0 0  0.2\n7 8 9  1 0 0  0.3\n", 3);
+    const PointCloud some = read_cloud(file, {}, nullptr, &left_out);
+    EXPECT_EQ(left_out.without_normal, 1U);
+    EXPECT_EQ(some.points_in_rig, (std::vector<Vector3d>{{1, 2, 3}, {7, 8, 9}}));
+    EXPECT_EQ(some.sigma_mm, (std::vector<float>{0.1F, 0.3F}));
+    EXPECT_EQ(some.normals_in_rig.size(), 2U);
+    write("1 2 3  0 0 0  0.1\n4 5 6  0 0 0  0.2\n7 8 9  1 0 0  0.3\n", 3);
+    EXPECT_TRUE(read_cloud(file).normals_in_rig.empty()) << "what most lack is a column that says nothing";
+    EXPECT_EQ(read_cloud(file).size(), 3U);
+}
+
+// What was not measured is exported at the origin, or at one and the same place.
+TEST(CloudFile, PointsAtTheOriginAndRepeatedOnesAreLeftOutAndCounted) {
+    const test::TemporaryFolder folder;
+    PointCloud cloud;
+    cloud.points_in_rig = {{0, 0, 0}, {1, 2, 3}, {0, 0, 0}, {1, 2, 3}, {0, 0, 5}, {1, 2, 3}};
+    cloud.sigma_mm = {1, 2, 3, 4, 5, 6};
+    write_cloud(cloud, folder.path() / "cloud.ply");
+    PointsLeftOut left_out;
+    const PointCloud back = read_cloud(folder.path() / "cloud.ply", {}, nullptr, &left_out);
+    EXPECT_EQ(back.points_in_rig, (std::vector<Vector3d>{{1, 2, 3}, {0, 0, 5}}));
+    EXPECT_EQ(back.sigma_mm, (std::vector<float>{2, 5}));
+    EXPECT_EQ(left_out.at_origin, 2U);
+    EXPECT_EQ(left_out.repeated, 2U);
+}
+
 }  // namespace
 }  // namespace planlight

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "registration/matching/cloud_region.h"
+#include "registration/matching/surface_sites.h"
 #include "tests/registration/matching/matching_scenes.h"
 
 namespace planlight::test {
@@ -54,6 +55,25 @@ TEST(CloudPieces, StraysBelongToNoPiece) {
     const CloudPieces pieces = cloud_pieces(spoiled(ball, 0.3, 0.25, 3));
     // A stray that falls within a few millimetres of the ball cannot be told: under a tenth of them.
     EXPECT_NEAR(static_cast<double>(pieces.stray_points) / static_cast<double>(pieces.finite_points), 0.25, 0.03);
+}
+
+// What a scanner did not measure is at or about its origin: such a heap made strays of the whole scan.
+TEST(CloudPieces, AHeapOfPointsAtOnePlaceMakesNoStraysOfTheScan) {
+    PointCloud cloud = sphere_view(80, 12000, 1);
+    const std::size_t ball = cloud.size();
+    for (int i = 0; i < 20000; ++i) {
+        cloud.points_in_rig.emplace_back(0.01 * (i % 7), 300 + 0.01 * (i % 11), 0.01 * (i % 13));
+        cloud.normals_in_rig.emplace_back(-Vector3d::UnitY());
+    }
+    const CloudPieces pieces = cloud_pieces(cloud);
+    std::size_t strays = 0;
+    for (std::size_t i = 0; i < ball; ++i) {
+        const int cell = pieces.cell_of_point[i];
+        strays += cell < 0 || pieces.cells[static_cast<std::size_t>(cell)].stray;
+    }
+    EXPECT_LT(strays, ball / 20);
+    EXPECT_GT(static_cast<double>(sites_of_cloud(cloud).size()),
+              0.9 * static_cast<double>(sites_of_cloud(sphere_view(80, 12000, 1)).size()));
 }
 
 TEST(WithinOutline, KeepsWhatTheCameraSeesInARectangleOrALasso) {
