@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "planning_io/case/rig_file.h"
 #include "planning_io/files/content_hash.h"
@@ -101,10 +102,17 @@ double light_by_scale_mm(const RegistrationResult& found, const Eigen::Vector3d&
     return surely * (p_in_ct - found.covariance.centre_in_ct).norm();
 }
 
+double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct, double hidden_mm) {
+    // (std::hypot of three numbers makes "not a number" of an infinite one, and no maximum holds that.)
+    const double pose_mm = found.covariance.known() ? predicted_error(found.covariance, p_in_ct).bound_95_mm
+                                                    : std::numeric_limits<double>::infinity();
+    if (!std::isfinite(pose_mm)) return std::numeric_limits<double>::infinity();
+    return std::hypot(pose_mm, hidden_mm, light_by_scale_mm(found, p_in_ct));
+}
+
 double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct) {
     const double hidden_mm = found.rig ? hidden_light_mm(*found.rig, found.patient_from_ct * p_in_ct) : 0;
-    return std::hypot(predicted_error(found.covariance, p_in_ct).bound_95_mm, hidden_mm,
-                      light_by_scale_mm(found, p_in_ct));
+    return predicted_light_mm(found, p_in_ct, hidden_mm);
 }
 
 void check_case(const RegistrationResult& match, const Case& the_case, const fs::path& file,

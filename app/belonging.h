@@ -29,8 +29,10 @@ void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig,
 double light_by_scale_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct);
 
 /// How far off light may be at one point, 95 %, mm: by the registration, by what the scan could not tell of the rig,
-/// and by the scan's own size.
+/// and by the scan's own size. Infinite where nothing is known of the registration's pose.
 double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct);
+/// The same where it is known how much the rig may hide there, mm.
+double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct, double hidden_mm);
 
 /// Warnings for what is not known are added to `unknown`.
 void check_case(const RegistrationResult& match, const Case& the_case, const std::filesystem::path& file,

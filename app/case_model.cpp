@@ -180,8 +180,7 @@ std::shared_ptr<const std::vector<float>> predicted_on_skin_mm(const TriangleMes
     const double hidden_mm =
         found.rig ? found.rig->hidden_light_mm : 0;  // over the scanned skin: at each vertex it would take a second
     for (const auto& p : skin.vertices_in_ct)
-        errors->push_back(static_cast<float>(
-            std::hypot(predicted_error(found.covariance, p).bound_95_mm, hidden_mm, light_by_scale_mm(found, p))));
+        errors->push_back(static_cast<float>(predicted_light_mm(found, p, hidden_mm)));
     return errors;
 }
 
@@ -198,13 +197,31 @@ std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud&
     return distances;
 }
 
+namespace {
+
+/// Of landmarks, of a scan of skin, or of what was taken for skin among cloth.
+std::string evidence_of_fit(const RegistrationResult& result) {
+    if (!(result.inlier_distance_mm > 0))
+        return fmt::format("Residual {:.2f} mm rms, of {} landmarks.", result.residual_rms_mm, result.points);
+    const std::size_t judged = result.judged_points > 0 ? result.judged_points : result.points;  // (of an older file)
+    if (!result.skin_fraction)
+        return fmt::format("Residual {:.2f} mm rms; {:.0f} % of {} points within {:.1f} mm of the skin.",
+                           result.residual_rms_mm, 100 * result.inlier_fraction, judged, result.inlier_distance_mm);
+    return fmt::format(
+        "Residual {:.2f} mm rms; {:.0f} % of the {} points taken for skin ({:.0f} % of the scan's surface) within "
+        "{:.1f} mm of it.",
+        result.residual_rms_mm, 100 * result.inlier_fraction, judged, 100 * *result.skin_fraction,
+        result.inlier_distance_mm);
+}
+
+}  // namespace
+
 std::vector<std::string> evidence_of(const RegistrationResult& result) {
     std::vector<std::string> lines;
-    lines.push_back(fmt::format("Residual {:.2f} mm rms; {:.0f} % of {} points within {:.1f} mm of the skin.",
-                                result.residual_rms_mm, 100 * result.inlier_fraction, result.points,
-                                result.inlier_distance_mm));
-    lines.push_back(fmt::format("Next best other pose fits {:.1f} times worse; {} independent bases agree.",
-                                result.runner_up_ratio, result.agreeing_bases));
+    lines.push_back(evidence_of_fit(result));
+    if (result.runner_up_ratio > 0 || result.agreeing_bases > 0)
+        lines.push_back(fmt::format("Next best other pose fits {:.1f} times worse; {} independent bases agree.",
+                                    result.runner_up_ratio, result.agreeing_bases));
     if (result.mirror_ratio > 0)
         lines.push_back(fmt::format("The mirror image fits {:.1f} times worse; size of the head {:+.1f} ± {:.1f} %.",
                                     result.mirror_ratio, 100 * (1 / result.scale - 1), 100 * result.scale_sigma));
@@ -217,9 +234,10 @@ std::vector<std::string> evidence_of(const RegistrationResult& result) {
     if (result.blocked_fraction)
         lines.push_back(fmt::format("{:.0f} % of the scan was seen through what is body in the CT.",
                                     100 * *result.blocked_fraction));
-    lines.push_back(fmt::format("The skin lies {:.1f} mm {} that of the CT, and has moved by {:.1f} mm (rms).",
-                                std::abs(result.skin_offset_mm), result.skin_offset_mm < 0 ? "inside of" : "outside of",
-                                result.skin_movement_mm));
+    if (result.skin_offset_mm && result.skin_movement_mm)
+        lines.push_back(fmt::format("The skin lies {:.1f} mm {} that of the CT, and has moved by {:.1f} mm (rms).",
+                                    std::abs(*result.skin_offset_mm),
+                                    *result.skin_offset_mm < 0 ? "inside of" : "outside of", *result.skin_movement_mm));
     lines.push_back(
         fmt::format("Found in {:.2f} s, refined in {:.0f} ms.", result.initial_match_s, 1000 * result.refine_s));
     lines.insert(lines.end(), result.reasons.begin(), result.reasons.end());
@@ -240,7 +258,7 @@ void show_match(const Case& the_case, const RegistrationResult& found, const std
     model.scene.ct_from_rig = found.patient_from_ct.inverse();
     model.scene.cloud = cloud;
     if (cloud) {
-        const double offset_mm = model.scene.skin_offset_mm = found.skin_offset_mm;
+        const double offset_mm = model.scene.skin_offset_mm = found.skin_offset_mm.value_or(0);
         model.scene.cloud_distance_mm = distances_to_skin_mm(*cloud, model.scene.ct_from_rig, the_case.lut, offset_mm);
         fit.before_distance_mm = distances_to_skin_mm(*cloud, fit.before_ct_from_rig, the_case.lut, offset_mm);
     }

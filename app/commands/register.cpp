@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +13,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/pdf_option.h"
 #include "app/commands/rig_words.h"
+#include "app/console.h"
 #include "app/json_text.h"
 #include "app/report/registration_certificate.h"
 #include "app/site_settings.h"
@@ -49,10 +52,20 @@ const char* name_of(Verdict verdict) {
     return verdict == Verdict::yes ? "yes" : verdict == Verdict::ask ? "ask" : "no";
 }
 
+void say_left_out(const PointsLeftOut& left_out, const Path& file) {
+    if (left_out.all() == 0) return;
+    warn(fmt::format(
+        "{}: {} points were left out as not measured: {} at the origin, {} where another one is, {} without "
+        "a normal.",
+        file.string(), left_out.all(), left_out.at_origin, left_out.repeated, left_out.without_normal));
+}
+
 /// The cloud as the matching wants it: mm, with normals towards the devices.
 PointCloud cloud_of(const RegisterOptions& options, std::optional<RigState>& rig) {
     std::vector<std::string> comments;
-    PointCloud cloud = read_cloud(options.cloud, {unit_in_mm(options.unit), options.in_rig}, &comments);
+    PointsLeftOut left_out;
+    PointCloud cloud = read_cloud(options.cloud, {unit_in_mm(options.unit), options.in_rig}, &comments, &left_out);
+    say_left_out(left_out, options.cloud);
     check_unit(cloud, options.unit, options.cloud);
     rig = rig_state_in(comments, options.cloud);
     if (!cloud.normals_in_rig.empty()) return cloud;
@@ -109,6 +122,35 @@ void write_certificate(const RegisterOptions& options, const Case& the_case, con
     write_pdf(document, options.pdf, ReadableBy::owner);
 }
 
+/// A refusal does not take the place of a match that may be used, nor of a file that is none of ours.
+bool keeps_what_was_there(const RegistrationResult& result, const Path& file) {
+    if (result.verdict != Verdict::no || !std::filesystem::exists(file)) return false;
+    try {
+        return read_registration(file).verdict != Verdict::no;
+    } catch (const Error&) {
+        return true;
+    }
+}
+
+/// 100 % of what was judged may be little of the scan.
+std::string fit_in_words(const RegistrationResult& result) {
+    if (!result.skin_fraction)
+        return fmt::format("{:.0f} % of {} points on the skin", 100 * result.inlier_fraction, result.judged_points);
+    return fmt::format("{:.0f} % of the {} points taken for skin ({:.0f} % of the scan's surface) on it",
+                       100 * result.inlier_fraction, result.judged_points, 100 * *result.skin_fraction);
+}
+
+std::string scan_in_words(const RegistrationResult& result) {
+    if (result.judged_points == 0) return fmt::format("{} points, of which none could be judged", result.points);
+    std::string words = fmt::format("residual {:.2f} mm rms, {}", result.residual_rms_mm, fit_in_words(result));
+    if (result.runner_up_ratio > 0) words += fmt::format(", runner-up {:.2f} times worse", result.runner_up_ratio);
+    return words;
+}
+
+nlohmann::json json_of(const std::optional<double>& value) {
+    return value && std::isfinite(*value) ? nlohmann::json(*value) : nlohmann::json();
+}
+
 int run_register(const RegisterOptions& options) {
     check_pdf(options.pdf);
     const Case the_case = read_case(options.case_folder);
@@ -116,17 +158,20 @@ int run_register(const RegisterOptions& options) {
     std::optional<RigState> rig;
     RegistrationResult result = match(options, the_case, cloud, rig);
     take_case_and_rig(the_case, rig, result);
-    write_registration(result, options.out);
+    const bool keeps = keeps_what_was_there(result, options.out);
+    if (!keeps) write_registration(result, options.out);
     if (!options.slicer_transform.empty() && result.verdict != Verdict::no)
         write_slicer_transform(result.patient_from_ct, options.slicer_transform);
     const CaseDrawing drawing(the_case);
-    write_certificate(options, the_case, drawing, result, cloud);
+    if (!keeps) write_certificate(options, the_case, drawing, result, cloud);
     const std::vector<double> predicted =
         result.verdict == Verdict::no ? std::vector<double>{} : predicted_errors_mm(the_case.plan, result);
     nlohmann::json items = nlohmann::json::array();
     for (std::size_t i = 0; i < predicted.size() && i < drawing.drawing.items.size(); ++i)
-        items.push_back({{"name", drawing.drawing.items[i].name}, {"predicted_95_mm", predicted[i]}});
+        items.push_back({{"name", drawing.drawing.items[i].name}, {"predicted_95_mm", json_of(predicted[i])}});
     if (options.json) {
+        const bool scanned = result.judged_points > 0, landmarks = options.cloud.empty() && result.residual_rms_mm > 0;
+        const auto where = [](bool known, double value) { return known ? json_of(value) : nlohmann::json(); };
         const Eigen::Matrix4d m = result.patient_from_ct.matrix();
         nlohmann::json matrix = nlohmann::json::array();
         for (int r = 0; r < 4; ++r) matrix.push_back({m(r, 0), m(r, 1), m(r, 2), m(r, 3)});
@@ -135,23 +180,24 @@ int run_register(const RegisterOptions& options) {
             {"title", title_of(the_case)},
             {"verdict", name_of(result.verdict)},
             {"reasons", result.reasons},
-            {"patient_from_ct", matrix},
+            {"patient_from_ct", result.verdict == Verdict::no ? nlohmann::json() : matrix},
             {"points", result.points},
-            {"residual_rms_mm", result.residual_rms_mm},
-            {"residual_median_mm", result.residual_median_mm},
-            {"inlier_fraction", result.inlier_fraction},
-            {"runner_up_ratio", result.runner_up_ratio},
+            {"judged_points", result.judged_points},
+            {"residual_rms_mm", where(scanned || landmarks, result.residual_rms_mm)},
+            {"residual_median_mm", where(scanned, result.residual_median_mm)},
+            {"inlier_fraction", where(scanned, result.inlier_fraction)},
+            {"runner_up_ratio", where(result.runner_up_ratio > 0, result.runner_up_ratio)},
             {"agreeing_bases", result.agreeing_bases},
-            {"weakest_sigma_mm", result.weakest_sigma_mm},
-            {"mirror_ratio", result.mirror_ratio},
-            {"blocked_fraction", result.blocked_fraction ? nlohmann::json(*result.blocked_fraction) : nlohmann::json()},
-            {"skin_fraction", result.skin_fraction ? nlohmann::json(*result.skin_fraction) : nlohmann::json()},
-            {"landmarks_off_mm", result.landmarks_off_mm ? nlohmann::json(*result.landmarks_off_mm) : nlohmann::json()},
-            {"scale", result.scale},
-            {"scale_sigma", result.scale_sigma},
-            {"skin_movement_mm", result.skin_movement_mm},
-            {"skin_offset_mm", result.skin_offset_mm},
-            {"shape_change_mm", result.shape_change_mm},
+            {"weakest_sigma_mm", json_of(result.weakest_sigma_mm)},
+            {"mirror_ratio", where(result.mirror_ratio > 0, result.mirror_ratio)},
+            {"blocked_fraction", json_of(result.blocked_fraction)},
+            {"skin_fraction", json_of(result.skin_fraction)},
+            {"landmarks_off_mm", json_of(result.landmarks_off_mm)},
+            {"scale", where(result.scale_sigma > 0, result.scale)},
+            {"scale_sigma", where(result.scale_sigma > 0, result.scale_sigma)},
+            {"skin_movement_mm", json_of(result.skin_movement_mm)},
+            {"skin_offset_mm", json_of(result.skin_offset_mm)},
+            {"shape_change_mm", json_of(result.shape_change_mm)},
             {"rig", result.rig ? nlohmann::json(rig_state_json(*result.rig)) : nlohmann::json()},
             {"items", items},
             {"seconds", {{"initial", result.initial_match_s}, {"fine", result.refine_s}}}};
@@ -162,13 +208,14 @@ int run_register(const RegisterOptions& options) {
             fmt::print("{}: {} landmarks, {:.2f} mm rms.\n", name_of(result.verdict), result.points,
                        result.residual_rms_mm);
         else
-            fmt::print("{}: residual {:.2f} mm rms, {:.0f} % of {} points on the skin, runner-up {:.2f} times worse.\n",
-                       name_of(result.verdict), result.residual_rms_mm, 100 * result.inlier_fraction, result.points,
-                       result.runner_up_ratio);
+            fmt::print("{}: {}.\n", name_of(result.verdict), scan_in_words(result));
         const SiteSettings site = read_site_settings();
         for (const auto& item : items)
-            fmt::print("  {}: within {} (95 %)\n", item["name"].get<std::string>(),
-                       length_text(item["predicted_95_mm"].get<double>(), site));
+            if (const auto& mm = item["predicted_95_mm"]; mm.is_number())
+                fmt::print("  {}: within {} (95 %)\n", item["name"].get<std::string>(),
+                           length_text(mm.get<double>(), site));
+            else
+                fmt::print("  {}: how far it may be off is not known\n", item["name"].get<std::string>());
         for (const auto& reason : result.reasons) fmt::print("  {}\n", reason);
     }
     const bool bad_rig = result.rig && result.rig->verdict == RigState::Verdict::not_trusted;
@@ -180,7 +227,9 @@ int run_register(const RegisterOptions& options) {
                     : std::string("Take cloth and hands away from the head, scan again from a side that shows more of "
                                   "it, and check "
                                   "that this is the patient of the case.") +
-                          (cloud ? hint_of_unit(*cloud, options.unit) : std::string()));
+                          (cloud ? hint_of_unit(*cloud, options.unit) : std::string()) +
+                          (keeps ? fmt::format(" {} is as it was before, and not of this scan.", options.out.string())
+                                 : std::string()));
     return 0;
 }
 

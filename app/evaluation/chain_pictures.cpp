@@ -122,17 +122,17 @@ void ChainPictures::take_match(const Session& session) {
     if (found.verdict == Verdict::no) return;
     scene.skin = std::make_shared<TriangleMesh>(case_.skin);
     const RigidTransform after = scene.ct_from_rig;
-    scene.skin_offset_mm = found.skin_offset_mm;
+    const double offset_mm = scene.skin_offset_mm = found.skin_offset_mm.value_or(0);
     scene.ct_from_rig = found.initial_patient_from_ct.inverse();
-    scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut, found.skin_offset_mm);
+    scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut, offset_mm);
     RgbImage before = render_scene(scene, view, kSceneWidth, kSceneHeight);
     scene.ct_from_rig = after;
-    scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut, found.skin_offset_mm);
+    scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut, offset_mm);
     add("Scan on skin before and after the fine match",
         fmt::format(
             "Residual {:.2f} mm rms, {:.0f} % of the points on the skin (Fig. 3). Distances are to the skin where this "
             "scan found it as a whole: {:+.2f} mm outside of the CT's.",
-            found.residual_rms_mm, 100 * found.inlier_fraction, found.skin_offset_mm),
+            found.residual_rms_mm, 100 * found.inlier_fraction, offset_mm),
         side_by_side(before, render_scene(scene, view, kSceneWidth, kSceneHeight)));
     scene.cloud = nullptr;
     scene.cloud_distance_mm = nullptr;

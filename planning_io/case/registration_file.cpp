@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "planning_io/case/recording_json.h"
 #include "planning_io/case/rig_json.h"
@@ -24,12 +26,19 @@ Verdict verdict_of(const JsonValue& value) {
     value.refuse("is \"" + text + "\", none of yes, ask, no");
 }
 
-/// Absent or null where it is not known.
+/// Null where it is not known.
 Json json_of(const PoseCovariance& covariance) {
     if (!covariance.known() || !covariance.of_turn_and_shift.allFinite()) return Json();
     Json rows = Json::array();
     for (Eigen::Index i = 0; i < 36; ++i) rows.push_back(covariance.of_turn_and_shift(i / 6, i % 6));
     return {{"of_turn_and_shift", rows}, {"centre_in_ct", to_json(covariance.centre_in_ct)}};
+}
+
+/// A pose whose uncertainty nobody says may be off by anything.
+PoseCovariance nothing_known() {
+    PoseCovariance covariance;
+    covariance.of_turn_and_shift.diagonal().setConstant(std::numeric_limits<double>::infinity());
+    return covariance;
 }
 
 PoseCovariance covariance_of(const JsonValue& json) {
@@ -50,6 +59,11 @@ Json json_of(const CaseName& name) {
 
 CaseName case_name_of(const JsonValue& value) {
     return {value.at("code").text(), value.at("volume_hash").text(), value.at("mesh_hash").text()};
+}
+
+/// Null where it is not known.
+Json json_of(const std::optional<double>& value) {
+    return value ? Json(*value) : Json();
 }
 
 /// Of all that stands in the file but itself: the spaces between the words do not matter.
@@ -126,18 +140,20 @@ std::string text_of(const RegistrationResult& result) {
                      {"inlier_fraction", result.inlier_fraction},
                      {"inlier_distance_mm", result.inlier_distance_mm},
                      {"points", result.points},
+                     {"judged_points", result.judged_points},
                      {"runner_up_ratio", std::min(result.runner_up_ratio, std::numeric_limits<double>::max())},
                      {"agreeing_bases", result.agreeing_bases},
-                     {"weakest_sigma_mm", result.weakest_sigma_mm},
+                     {"weakest_sigma_mm", json_of(result.weakest_sigma_mm)},
                      {"mirror_ratio", std::min(result.mirror_ratio, std::numeric_limits<double>::max())},
-                     {"blocked_fraction", result.blocked_fraction ? Json(*result.blocked_fraction) : Json(nullptr)},
-                     {"landmarks_off_mm", result.landmarks_off_mm ? Json(*result.landmarks_off_mm) : Json(nullptr)},
-                     {"moved_in_scan_mm", result.moved_in_scan_mm ? Json(*result.moved_in_scan_mm) : Json(nullptr)},
+                     {"skin_fraction", json_of(result.skin_fraction)},
+                     {"blocked_fraction", json_of(result.blocked_fraction)},
+                     {"landmarks_off_mm", json_of(result.landmarks_off_mm)},
+                     {"moved_in_scan_mm", json_of(result.moved_in_scan_mm)},
                      {"scale", result.scale},
                      {"scale_sigma", result.scale_sigma},
-                     {"skin_movement_mm", result.skin_movement_mm},
-                     {"skin_offset_mm", result.skin_offset_mm},
-                     {"shape_change_mm", result.shape_change_mm},
+                     {"skin_movement_mm", json_of(result.skin_movement_mm)},
+                     {"skin_offset_mm", json_of(result.skin_offset_mm)},
+                     {"shape_change_mm", json_of(result.shape_change_mm)},
                      {"covariance", json_of(result.covariance)},
                      {"initial_match_s", result.initial_match_s},
                      {"refine_s", result.refine_s},
@@ -165,6 +181,10 @@ RegistrationResult registration_of_text(const std::string& text, const fs::path&
         const auto value = root.find(key);
         return value ? value->number() : 0.0;
     };
+    const auto known = [&](const char* key) {
+        const auto value = root.find(key);
+        return value ? std::optional(value->number()) : std::nullopt;
+    };
     RegistrationResult result;
     result.verdict = verdict_of(root.at("verdict"));
     const JsonValue reasons = root.at("reasons");
@@ -177,21 +197,25 @@ RegistrationResult registration_of_text(const std::string& text, const fs::path&
     result.inlier_fraction = number("inlier_fraction");
     result.inlier_distance_mm = number("inlier_distance_mm");
     result.runner_up_ratio = number("runner_up_ratio");
-    result.weakest_sigma_mm = number("weakest_sigma_mm");
+    result.weakest_sigma_mm = known("weakest_sigma_mm");
     result.mirror_ratio = number("mirror_ratio");
-    if (const auto blocked = root.find("blocked_fraction")) result.blocked_fraction = blocked->number();
-    if (const auto off = root.find("landmarks_off_mm")) result.landmarks_off_mm = off->number();
-    if (const auto moved = root.find("moved_in_scan_mm")) result.moved_in_scan_mm = moved->number();
+    result.skin_fraction = known("skin_fraction");
+    result.blocked_fraction = known("blocked_fraction");
+    result.landmarks_off_mm = known("landmarks_off_mm");
+    result.moved_in_scan_mm = known("moved_in_scan_mm");
     if (root.find("scale")) result.scale = number("scale");
     result.scale_sigma = number("scale_sigma");
-    result.skin_movement_mm = number("skin_movement_mm");
-    result.skin_offset_mm = number("skin_offset_mm");
-    result.shape_change_mm = number("shape_change_mm");
+    result.skin_movement_mm = known("skin_movement_mm");
+    result.skin_offset_mm = known("skin_offset_mm");
+    result.shape_change_mm = known("shape_change_mm");
     if (const auto skin = root.find("skin_displacement")) result.skin = skin_of(*skin);
-    if (const auto covariance = root.find("covariance")) result.covariance = covariance_of(*covariance);
+    const auto covariance = root.find("covariance");
+    result.covariance = covariance ? covariance_of(*covariance) : nothing_known();
     result.initial_match_s = number("initial_match_s");
     result.refine_s = number("refine_s");
     if (const auto points = root.find("points")) result.points = static_cast<std::size_t>(points->integer(0, kAny));
+    if (const auto judged = root.find("judged_points"))
+        result.judged_points = static_cast<std::size_t>(judged->integer(0, kAny));
     if (const auto bases = root.find("agreeing_bases"))
         result.agreeing_bases = static_cast<int>(bases->integer(0, 1000000000));
     if (const auto name = root.find("case")) result.of_case = case_name_of(*name);

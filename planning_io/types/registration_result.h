@@ -33,14 +33,15 @@ struct RegistrationResult {
 
     double residual_rms_mm = 0;     ///< of the inliers, point to surface
     double residual_median_mm = 0;  ///< of all points, absolute
-    double inlier_fraction = 0;     ///< of all points, nearer than `inlier_distance_mm` to the skin
+    double inlier_fraction = 0;     ///< of the points judged, nearer than `inlier_distance_mm` to the skin
     double inlier_distance_mm = 0;
-    std::size_t points = 0;
+    std::size_t points = 0;         ///< of the scan
+    std::size_t judged_points = 0;  ///< of these, what was matched: strays left out, and cloth where skin was found
     std::optional<double>
-        skin_fraction;            ///< of the scan, found as skin among cloth and matched alone; empty: not looked for
-    double runner_up_ratio = 0;   ///< cost of the best distinct other pose / cost of this one; > 1 is good
-    int agreeing_bases = 0;       ///< independent contact triplets that led to this pose
-    double weakest_sigma_mm = 0;  ///< how far the patient could slide along the least determined way
+        skin_fraction;           ///< of the scan, found as skin among cloth and matched alone; empty: not looked for
+    double runner_up_ratio = 0;  ///< cost of the best distinct other pose / cost of this one; > 1 is good
+    int agreeing_bases = 0;      ///< independent contact triplets that led to this pose
+    std::optional<double> weakest_sigma_mm;  ///< how far the patient could slide along the least determined way
     double mirror_ratio = 0;  ///< cost of the mirrored scan's best pose / cost of this one; > 1 is good; 0: not tried
     std::optional<double>
         blocked_fraction;  ///< of the ways back to the viewpoint, through the body; empty: none was said
@@ -49,9 +50,11 @@ struct RegistrationResult {
     double scale = 1;                        ///< by which the scan would have to grow to fit best; 1 is good
     double scale_sigma = 0;                  ///< one standard deviation of that
     PoseCovariance covariance;               ///< how uncertain T_ini is, for `predicted_error` at any point
-    double skin_movement_mm = 0;             ///< of the skin since the CT, rms, as the residuals tell it
-    double skin_offset_mm = 0;               ///< of the whole skin; positive outside of the CT's
-    double shape_change_mm = 0;  ///< how far light could be off because the head is smoothly deformed against the CT's
+    // Empty where it is not known: no scan was matched finely, or it has too little skin to tell.
+    std::optional<double> skin_movement_mm;  ///< of the skin since the CT, rms, as the residuals tell it
+    std::optional<double> skin_offset_mm;    ///< of the whole skin; positive outside of the CT's
+    std::optional<double>
+        shape_change_mm;  ///< how far light could be off because the head is smoothly deformed against the CT's
     double initial_match_s = 0, refine_s = 0;
     RigidTransform initial_patient_from_ct = RigidTransform::Identity();  ///< before the ICP (Fig. 3 left)
     SkinDisplacement skin;  ///< where the scan found the skin at this pose; not known where only landmarks were matched

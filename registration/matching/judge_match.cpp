@@ -82,38 +82,58 @@ void judge_mirror_and_scale(const RegistrationSettings& settings, const Registra
 
 }  // namespace
 
+namespace {
+
+/// One sentence at most: too few points on skin are one reason, whatever cannot be told for them.
+void judge_what_is_known(const FineMatch& fine, const RegistrationResult& result, Judgement& judgement) {
+    if (!std::isfinite(fine.weakest.sigma_mm))
+        judgement.ask_if(true,
+                         "too few points of the scan lie on skin to tell how far the patient could lie elsewhere: scan "
+                         "more of the head, or nearer");
+    else if (!result.skin.known())
+        judgement.ask_if(true,
+                         "too few points of the scan lie on skin to tell where the skin lies now: light that meets it "
+                         "at a slant may fall aside");
+    else if (!result.shape_change_mm)
+        judgement.ask_if(true,
+                         "too few points of the scan lie on skin to tell whether the head has the shape of the CT's: "
+                         "look at the light on landmarks");
+}
+
+}  // namespace
+
 void judge_fine_match(const RegistrationSettings& settings, const FineMatch& fine, const RegistrationResult& result,
                       Judgement& judgement) {
     judge_free_space(settings, result, judgement);
     judge_mirror_and_scale(settings, result, judgement);
-    judgement.ask_if(!result.skin.known(),
-                     "too few points of the scan lie on skin to tell where the skin lies now: light that meets it at a "
-                     "slant may fall aside");
+    judge_what_is_known(fine, result, judgement);
     judgement.ask_if(
         std::abs(fine.skin_offset_mm) > settings.max_skin_offset_mm,
         fmt::format("the whole skin lies {:.1f} mm {} that of the CT: swollen, or not the threshold of the skin",
                     std::abs(fine.skin_offset_mm), fine.skin_offset_mm > 0 ? "outside" : "inside"));
+    const double movement_mm = result.skin_movement_mm.value_or(0), shape_mm = result.shape_change_mm.value_or(0);
     judgement.ask_if(
-        result.skin_movement_mm > settings.max_skin_movement_mm,
+        movement_mm > settings.max_skin_movement_mm,
         fmt::format("the skin has moved by {:.1f} mm (rms) since the CT, and a part of that can look like a head that "
                     "lies otherwise: look at the light where skin lies close on bone",
-                    result.skin_movement_mm));
+                    movement_mm));
     const double spread_mm = spread_of_skin_mm(result.skin);
     judgement.ask_if(
-        result.skin_movement_mm <= settings.max_skin_movement_mm && spread_mm > settings.max_skin_spread_mm,
+        movement_mm <= settings.max_skin_movement_mm && spread_mm > settings.max_skin_spread_mm,
         fmt::format(
             "places of the skin lie {:.2f} mm (one sigma) off those of the CT: skin that sagged or swelled since "
             "can look like a head that lies otherwise: look at the light where skin lies close on bone",
             spread_mm));
     judgement.ask_if(
-        result.shape_change_mm > settings.max_shape_change_mm,
+        shape_mm > settings.max_shape_change_mm,
         fmt::format("the head of the scan fits the CT better when it is stretched, sheared or twisted, and light could "
                     "lie {:.1f} mm off: another patient, one who moved during the CT, a distorted MR or a wrong "
                     "calibration: look at the light on landmarks",
-                    result.shape_change_mm));
+                    shape_mm));
     const bool weak = fine.weakest.sigma_mm > settings.max_weakest_sigma_mm;
-    judgement.ask_if(weak, fmt::format("the patient could {} by {:.1f} mm unnoticed: scan {} as well",
-                                       fine.weakest.in_words, fine.weakest.sigma_mm, fine.weakest.advice));
+    judgement.ask_if(weak && std::isfinite(fine.weakest.sigma_mm),
+                     fmt::format("the patient could {} by {:.1f} mm unnoticed: scan {} as well", fine.weakest.in_words,
+                                 fine.weakest.sigma_mm, fine.weakest.advice));
     judgement.ask_if(
         !weak && fine.weakest.sigma_mm > settings.weak_sigma_mm && fine.fit.shape_rms_mm > settings.max_shape_rms_mm,
         fmt::format("what was scanned has not quite the shape of the skin ({:.1f} mm rms beside the scan's own "

@@ -39,6 +39,7 @@ struct DeformablePose {
     double scale = 1;           ///< by which the scan would have to grow to fit best
     double scale_sigma = 0;     ///< one standard deviation of that
     int patches = 0;
+    bool known() const { return covariance.of_turn_and_shift.allFinite(); }
 };
 
 /// The last step of the fine match: from a pose that is right to about a millimetre.

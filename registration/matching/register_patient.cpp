@@ -74,14 +74,16 @@ FineMatch match_finely(const PointCloud& cloud, const PointCloud& seen, const Sk
     const DeformablePose settled = refine_pose_deformable(cloud, lut, icp.ct_from_rig, settings.skin);
     if (settings.moved_skin) icp.ct_from_rig = settled.ct_from_rig;
     result.covariance = settled.covariance;
-    result.skin_movement_mm = settled.movement_mm;
-    result.skin_offset_mm = settled.offset_mm;
+    if (settled.known()) {
+        result.skin_movement_mm = settled.movement_mm;
+        result.skin_offset_mm = settled.offset_mm;
+    }
     result.patient_from_ct = icp.ct_from_rig.inverse();
     result.skin = measure_displacement(cloud, lut, icp.ct_from_rig);
-    const SmoothDeformation deformation = fit_smooth_deformation(cloud, lut, icp.ct_from_rig);
-    result.shape_change_mm = deformation.probability() * deformation.p95_mm;
+    if (const auto deformation = fit_smooth_deformation(cloud, lut, icp.ct_from_rig))
+        result.shape_change_mm = deformation->probability() * deformation->p95_mm;
     widen_by_spread(result.skin, settings, result.covariance);
-    widen_by_shape(result.shape_change_mm, result.covariance);
+    widen_by_shape(result.shape_change_mm.value_or(0), result.covariance);
     result.refine_s = seconds_since(start);
 
     FineMatch fine{lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm,
@@ -90,7 +92,8 @@ FineMatch match_finely(const PointCloud& cloud, const PointCloud& seen, const Sk
     result.inlier_fraction = fine.fit.inlier_fraction();
     result.residual_rms_mm = fine.fit.inlier_rms_mm;
     result.residual_median_mm = fine.fit.median_mm;
-    result.weakest_sigma_mm = fine.weakest.sigma_mm;
+    if (std::isfinite(fine.weakest.sigma_mm)) result.weakest_sigma_mm = fine.weakest.sigma_mm;
+    result.judged_points = fine.fit.known;
     result.scale = settled.scale;
     result.scale_sigma = settled.scale_sigma;
     if (settings.viewpoint_in_rig)

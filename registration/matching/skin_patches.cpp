@@ -76,20 +76,31 @@ std::vector<SkinPatch> points_on_skin(const PointCloud& cloud, const SkinLut& lu
 
 std::vector<SkinPatch> patches_of(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
                                   int count) {
+    constexpr std::size_t kFewest = 4;                            // points of a patch
+    constexpr double kMost = 0.7, kWider = 1.5, kWidest_mm = 14;  // of the points: a thin scan takes larger patches
     const std::vector<SkinPatch> points = points_on_skin(cloud, lut, ct_from_rig);
+    std::size_t held = 0;  // points of the patches
     const auto gathered = [&](double cell_mm) {
+        held = 0;
         std::map<std::array<int, 3>, std::vector<const SkinPatch*>> cells;
         for (const SkinPatch& p : points) {
             const Eigen::Vector3i cell = (p.x_in_ct / cell_mm).array().floor().cast<int>();
             cells[{cell.x(), cell.y(), cell.z()}].push_back(&p);
         }
         std::vector<SkinPatch> patches;
-        for (const auto& [cell, own] : cells)
-            if (own.size() >= 4) patches.push_back(mean_of(own));
+        for (const auto& [cell, own] : cells) {
+            if (own.size() < kFewest) continue;
+            held += own.size();
+            patches.push_back(mean_of(own));
+        }
         return patches;
     };
     double cell_mm = 6;
     std::vector<SkinPatch> patches = gathered(cell_mm);
+    while (static_cast<double>(held) < kMost * static_cast<double>(points.size()) && kWider * cell_mm <= kWidest_mm) {
+        cell_mm *= kWider;
+        patches = gathered(cell_mm);
+    }
     for (int i = 0; i < 12 && static_cast<int>(patches.size()) > count; ++i) {
         cell_mm *= std::clamp(std::sqrt(static_cast<double>(patches.size()) / count), 1.05, 3.0);
         patches = gathered(cell_mm);

@@ -23,7 +23,9 @@ struct SkinPatch {
 /// the distance field is twice as coarse and cuts corners.
 std::vector<SkinPatch> points_on_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig);
 
-/// The scan in patches of about equal size, about `count` of them; those of fewer than a few points are left out.
+/// The scan in patches of about equal size, about `count` of them at most; those of fewer than four points are left
+/// out. Patches are 6 mm wide, and up to 14 mm where they would hold less than 70 % of the points: where a scan is
+/// thin.
 std::vector<SkinPatch> patches_of(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
                                   int count);
 

@@ -93,12 +93,11 @@ double SmoothDeformation::probability() const {
     return 1 / (1 + std::exp(-log_evidence));
 }
 
-SmoothDeformation fit_smooth_deformation(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
-                                         int max_patches) {
-    SmoothDeformation result;
+std::optional<SmoothDeformation> fit_smooth_deformation(const PointCloud& cloud, const SkinLut& lut,
+                                                        const RigidTransform& ct_from_rig, int max_patches) {
     const std::vector<SkinPatch> patches = patches_of(cloud, lut, ct_from_rig, max_patches);
     constexpr std::size_t kFewest = 48;
-    if (patches.size() < kFewest) return result;
+    if (patches.size() < kFewest) return std::nullopt;
     const auto n = static_cast<Index>(patches.size());
     Vector3d centre = Vector3d::Zero();
     for (const SkinPatch& p : patches) centre += p.x_in_ct / static_cast<double>(n);
@@ -144,7 +143,8 @@ SmoothDeformation fit_smooth_deformation(const PointCloud& cloud, const SkinLut&
     for (const auto& of_skin : solved)
         for (std::size_t t = 0; t < of_skin.size(); ++t)
             (t == 0 ? without : with).add(of_skin[t].log_likelihood, of_skin[t].found);
-    if (!(without.sum > 0) || !(with.sum > 0)) return result;
+    if (!(without.sum > 0) || !(with.sum > 0)) return std::nullopt;
+    SmoothDeformation result;
     result.log_evidence = with.log_sum() - std::log(static_cast<double>(kTimes.size())) - without.log_sum();
     const VectorXd moved = movements.rigid * (with.pose / with.sum - without.pose / without.sum) +
                            movements.modes * (with.modes / with.sum);

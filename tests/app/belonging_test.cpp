@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
+#include "app/case_model.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/types/error.h"
 #include "tests/planning_io/example_rig.h"
@@ -32,6 +36,9 @@ RigState a_state(RigState::Verdict verdict) {
 RegistrationResult match_with(const std::optional<RigState>& rig) {
     RegistrationResult match;
     match.verdict = Verdict::yes;
+    match.covariance.of_turn_and_shift.setIdentity();
+    match.covariance.of_turn_and_shift *= 1e-8;
+    match.covariance.centre_in_ct = {0, 0, 700};
     take_case_and_rig(a_case(), rig, match);
     return match;
 }
@@ -84,6 +91,19 @@ TEST(RigOfAMatch, AScanOfAnotherSizeIsInTheBound) {
         EXPECT_NEAR(predicted_light_mm(match, far), 0.7, 0.05);
         EXPECT_LT(predicted_light_mm(match, match.covariance.centre_in_ct), 0.05);
     }
+}
+
+/// Not within 0.0 mm, which nothing could be.
+TEST(RigOfAMatch, APoseOfWhichNothingIsKnownMayBeOffByAnything) {
+    RegistrationResult match = match_with(a_state(RigState::Verdict::as_calibrated));
+    match.covariance.of_turn_and_shift.setZero();
+    EXPECT_TRUE(std::isinf(predicted_light_mm(match, {0, 0, 700})));
+    match.covariance.of_turn_and_shift.diagonal().setConstant(std::numeric_limits<double>::infinity());
+    EXPECT_TRUE(std::isinf(predicted_light_mm(match, {0, 0, 700})));
+    for (const double mm : predicted_errors_mm(a_case().plan, match)) EXPECT_TRUE(std::isinf(mm));
+    TriangleMesh skin;
+    skin.vertices_in_ct = {{0, 0, 700}};
+    EXPECT_TRUE(std::isinf(predicted_on_skin_mm(skin, match)->at(0)));
 }
 
 TEST(RigOfAMatch, LightIsDrawnWithTheRigThatWasFoundOrNotAtAll) {

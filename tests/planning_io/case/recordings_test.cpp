@@ -58,6 +58,8 @@ TEST(Recordings, CaptureFramesRegistrationAndPosesReadBack) {
     result.runner_up_ratio = std::numeric_limits<double>::infinity();
     result.landmarks_off_mm = 2.5;
     result.moved_in_scan_mm = 0.07;  // and the viewpoint was not said
+    result.judged_points = 1234, result.skin_fraction = 0.1;
+    result.weakest_sigma_mm = 0.4;  // and whether the head has the CT's shape is not known
     result.skin.apart_mm = 4, result.skin.alike_over_mm = 25;
     result.skin.offset_mm = -0.35, result.skin.spread_mm = 0.08;
     result.skin.places = {{{10.126, -20, 30}, -0.31254, 0.02}, {{14, -20, 30.5}, -0.4, 0.05}};
@@ -74,12 +76,22 @@ TEST(Recordings, CaptureFramesRegistrationAndPosesReadBack) {
     EXPECT_EQ(result_back.landmarks_off_mm, 2.5);
     EXPECT_EQ(result_back.moved_in_scan_mm, 0.07);
     EXPECT_FALSE(result_back.blocked_fraction);
+    EXPECT_EQ(result_back.judged_points, 1234U);
+    EXPECT_EQ(result_back.skin_fraction, 0.1);
+    EXPECT_EQ(result_back.weakest_sigma_mm, 0.4);
+    EXPECT_FALSE(result_back.shape_change_mm);
     ASSERT_EQ(result_back.skin.places.size(), 2u);
     EXPECT_EQ(result_back.skin.offset_mm, -0.35);
     EXPECT_EQ(result_back.skin.alike_over_mm, 25);
     EXPECT_LT((result_back.skin.places[0].p_in_ct - result.skin.places[0].p_in_ct).norm(), 0.01);
     EXPECT_NEAR(result_back.skin.places[0].mm, -0.31254, 1e-4);
     EXPECT_EQ(result_back.skin.places[1].sigma_mm, 0.05);
+
+    result.covariance.of_turn_and_shift.diagonal().setConstant(std::numeric_limits<double>::infinity());
+    write_registration(result, folder.path() / "not_known.json");
+    const auto not_known = read_registration(folder.path() / "not_known.json");
+    EXPECT_TRUE(std::isinf(predicted_error(not_known.covariance, {0, 0, 50}).bound_95_mm))
+        << "a pose of which nothing is known may be off by anything, also out of a file";
 
     std::vector<TrackedPose> poses(2);
     poses[0].rig_from_patient = result.patient_from_ct;

@@ -5,13 +5,15 @@
 namespace planlight {
 namespace {
 
-Verdict verdict_of(double shape_rms_mm, double weakest_sigma_mm, bool skin_found = true, double movement_mm = 0) {
+Verdict verdict_of(double shape_rms_mm, double weakest_sigma_mm, bool skin_found = true, double movement_mm = 0,
+                   bool shape_tried = true) {
     FineMatch fine;
     fine.fit.shape_rms_mm = shape_rms_mm;
     fine.weakest.sigma_mm = weakest_sigma_mm;
     RegistrationResult result;
     result.mirror_ratio = 2;
     result.skin_movement_mm = movement_mm;
+    if (shape_tried) result.shape_change_mm = 0;
     if (skin_found) result.skin.places.resize(1);
     Judgement judgement(result);
     judge_fine_match({}, fine, result, judgement);
@@ -30,6 +32,24 @@ TEST(JudgeMatch, AnotherShapeAtAPlaceThatCouldSlideIsAskedAbout) {
 TEST(JudgeMatch, WhereTheSkinWasFoundNowhereLightMayFallAside) {
     EXPECT_EQ(verdict_of(0.1, 0.1), Verdict::yes);
     EXPECT_EQ(verdict_of(0.1, 0.1, false), Verdict::ask);
+}
+
+TEST(JudgeMatch, AShapeThatWasNotLookedAtIsNoRightShape) {
+    EXPECT_EQ(verdict_of(0.1, 0.1, true, 0, false), Verdict::ask);
+}
+
+// Neither "by inf mm" nor one reason told thrice: three are a refusal where skin was found among cloth.
+TEST(JudgeMatch, APoseOfWhichNothingIsKnownIsAskedAboutInOneSentence) {
+    FineMatch fine;
+    fine.weakest = weakest_way(PoseCovariance());
+    RegistrationResult result;
+    result.mirror_ratio = 2;
+    Judgement judgement(result);
+    judge_fine_match({}, fine, result, judgement);
+    EXPECT_EQ(result.verdict, Verdict::ask);
+    ASSERT_EQ(result.reasons.size(), 1U);
+    EXPECT_EQ(result.reasons[0].find("inf"), std::string::npos) << result.reasons[0];
+    EXPECT_NE(result.reasons[0].find("too few points"), std::string::npos) << result.reasons[0];
 }
 
 // Broad swellings of one side, 2.5 to 5 mm high, were taken for pose in part: up to 2.2 mm off, 0.62 to 0.77 mm found.

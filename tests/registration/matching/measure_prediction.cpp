@@ -160,9 +160,9 @@ void log_case(std::ostream& log, unsigned seed, const Case& done) {
     for (const Target& t : done.targets) bound_mm = std::max(bound_mm, t.bound_mm);
     log << fmt::format("{},{},{},{:.2f},{:.2f},{:.2f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},\"{}\"\n",
                        seed, done.movement, static_cast<int>(done.verdict), done.moved_mm, done.noise_mm, done.strays,
-                       r.skin_movement_mm, spread_of_skin_mm(r.skin), r.skin_offset_mm, r.residual_rms_mm,
-                       r.weakest_sigma_mm, r.inlier_fraction, done.worst_error_mm(), bound_mm,
-                       fmt::join(r.reasons, "; "))
+                       r.skin_movement_mm.value_or(NAN), spread_of_skin_mm(r.skin), r.skin_offset_mm.value_or(NAN),
+                       r.residual_rms_mm, r.weakest_sigma_mm.value_or(INFINITY), r.inlier_fraction,
+                       done.worst_error_mm(), bound_mm, fmt::join(r.reasons, "; "))
         << std::flush;
 }
 

@@ -6,6 +6,7 @@
 #include "registration/matching/match_evidence.h"
 #include "registration/matching/refine_icp.h"
 #include "registration/matching/refine_pose_deformable.h"
+#include "registration/matching/smooth_deformation.h"
 #include "tests/registration/matching/matching_scenes.h"
 #include "tests/registration/matching/moved_skin.h"
 
@@ -101,6 +102,25 @@ TEST(RefinePoseDeformable, TooLittleSkinToTellIsAnInfiniteBoundNotASmallOne) {
     EXPECT_LT(pose.patches, 24);
     EXPECT_FALSE(std::isfinite(predicted_error(pose.covariance, Eigen::Vector3d::Zero()).bound_95_mm));
     EXPECT_TRUE(pose.ct_from_rig.isApprox(RigidTransform::Identity()));
+}
+
+// A scan of 1 to 2 points in a patch lost nearly all of it, and nothing was known of a head that is well scanned; its
+// shape was taken for right, for nobody had looked.
+TEST(RefinePoseDeformable, AThinScanIsGatheredInLargerPatchesAndItsShapeIsLookedAt) {
+    for (const int points : {1000, 1400, 2000, 20000}) {
+        const PointCloud cloud = spoiled(head_view(View::front, 190, points, 7), 0.2, 0, 8);
+        const DeformablePose pose = refine_pose_deformable(cloud, head_lut(), RigidTransform::Identity());
+        EXPECT_GE(pose.patches, 60) << points;
+        EXPECT_LT(predicted_error(pose.covariance, pose.covariance.centre_in_ct).bound_95_mm, 1.2) << points;
+        const auto shape = fit_smooth_deformation(cloud, head_lut(), RigidTransform::Identity());
+        ASSERT_TRUE(shape) << points;
+        EXPECT_LT(shape->probability() * shape->p95_mm, 0.6) << points;
+    }
+}
+
+TEST(RefinePoseDeformable, OfTooLittleSkinTheShapeIsNotKnown) {
+    EXPECT_FALSE(
+        fit_smooth_deformation(head_view(View::front, 25, 300, 1), head_lut(), RigidTransform::Identity()).has_value());
 }
 
 TEST(RefinePoseDeformable, TheScanStillLiesOnTheSkinAfterwards) {

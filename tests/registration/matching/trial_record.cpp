@@ -98,10 +98,10 @@ void run_trial(const TrialScan& scan, const SkinLut& lut, TrialRecord& record) {
     record.median_mm = result.residual_median_mm;
     if (record.searched)
         record.shape_mm = lay_on_skin(scan.cloud, lut, result.patient_from_ct.inverse(), settings.inlier_distance_mm,
-                                      result.skin_offset_mm)
+                                      result.skin_offset_mm.value_or(0))
                               .shape_rms_mm;
     record.scale = result.scale;
-    record.weakest_mm = result.weakest_sigma_mm;
+    record.weakest_mm = result.weakest_sigma_mm.value_or(std::numeric_limits<double>::infinity());
     record.blocked = result.blocked_fraction.value_or(0);
     record.bases = result.agreeing_bases;
     record.initial_s = result.initial_match_s;

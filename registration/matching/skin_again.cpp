@@ -1,0 +1,64 @@
+#include "registration/matching/skin_again.h"
+
+#include <array>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "planning_io/types/statistics.h"
+#include "planning_io/types/triangle_mesh.h"
+
+namespace planlight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Cells of twice the places' distance in which, or beside which, there is a place.
+class Around {
+public:
+    explicit Around(const SkinDisplacement& found) : everywhere_(!found.known()), cell_mm_(2 * found.apart_mm) {
+        for (const auto& place : found.places) {
+            const std::array<int, 3> at = cell_of(place.p_in_ct);
+            for (int i = -1; i <= 1; ++i)
+                for (int j = -1; j <= 1; ++j)
+                    for (int k = -1; k <= 1; ++k) cells_.insert(std::array<int, 3>{at[0] + i, at[1] + j, at[2] + k});
+        }
+    }
+    bool holds(const Vector3d& p_in_ct) const { return everywhere_ || cells_.contains(cell_of(p_in_ct)); }
+
+private:
+    std::array<int, 3> cell_of(const Vector3d& p_in_ct) const {
+        const Eigen::Vector3i at = (p_in_ct / cell_mm_).array().floor().cast<int>();
+        return {at.x(), at.y(), at.z()};
+    }
+    bool everywhere_;
+    double cell_mm_;
+    std::set<std::array<int, 3>> cells_;
+};
+
+}  // namespace
+
+SkinAgain skin_again(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
+                     const SkinDisplacement& found, double skin_offset_mm) {
+    constexpr double kNear_mm = 10, kFacingCosine = 0.5;
+    const bool has_normals = cloud.normals_in_rig.size() == cloud.size();
+    const Around around(found);
+    SkinAgain again;
+    std::vector<double> off_mm;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        if (!cloud.points_in_rig[i].allFinite()) continue;
+        const Vector3d p = ct_from_rig * cloud.points_in_rig[i];
+        const SkinPoint* skin = lut.nearest_skin(p);
+        if (!skin || skin->flags != kSkin) continue;
+        const Vector3d normal = skin->normal_in_ct.cast<double>(), foot = skin->position_in_ct.cast<double>();
+        if (has_normals && !((ct_from_rig.linear() * cloud.normals_in_rig[i]).dot(normal) > kFacingCosine)) continue;
+        if (!((p - foot).norm() < kNear_mm) || !around.holds(foot)) continue;
+        again.cloud.points_in_rig.push_back(cloud.points_in_rig[i]);
+        if (has_normals) again.cloud.normals_in_rig.push_back(cloud.normals_in_rig[i]);
+        off_mm.push_back(std::abs((p - foot).dot(normal) - skin_offset_mm));
+    }
+    again.median_mm = median(std::move(off_mm));
+    return again;
+}
+
+}  // namespace planlight
