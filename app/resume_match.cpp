@@ -80,22 +80,6 @@ double light_moved_mm(const CameraModel& was, const CameraModel& now, const Rigi
     return most_mm;
 }
 
-/// Median distance of the scanned skin from the CT's, moved out by what the match had found, mm.
-double residual_mm(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig, double offset_mm) {
-    constexpr std::size_t kSample = 4000;
-    std::vector<double> distances;
-    const std::size_t step = 1 + cloud.size() / kSample;
-    for (std::size_t i = 0; i < cloud.size(); i += step)
-        if (const auto distance = lut.signed_distance(ct_from_rig * cloud.points_in_rig[i]))
-            distances.push_back(std::abs(distance->mm - offset_mm));
-        else
-            distances.push_back(1e3);
-    if (distances.empty()) return 1e3;
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    return *middle;
-}
-
 }  // namespace
 
 std::optional<KeptMatch> Session::kept_match() const {
@@ -180,15 +164,18 @@ void Session::compare_skin_again(const KeptMatch& match, const RigidTransform& r
     const ResumeSettings& limits = settings_.resume;
     const RegistrationResult& found = match.registration;
     const RigidTransform rig_from_ct = rig_from_patient * found.patient_from_ct;
-    check.residual_mm = residual_mm(*check.cloud, case_.lut, rig_from_ct.inverse(), found.skin_offset_mm);
     SkinCheck skin;
-    compare_skin(*check.cloud, rig_from_ct, skin);
+    compare_skin(*check.cloud, found, rig_from_ct, skin);
+    check.residual_mm = skin.residual_mm;
     check.skin_off_mm = skin.off_mm, check.bound_mm = skin.bound_mm;
-    if (!skin.known) refuse(skin.why_not);
+    // Where cloth was left out at the match it may be most of this scan as well.
+    if (!found.skin_fraction && 2 * skin.on_skin < check.cloud->size())
+        refuse("the skin does not lie where the markers put it");
     if (check.residual_mm > found.residual_median_mm + limits.max_more_residual_mm)
         refuse(
             fmt::format("the skin is not where the markers put it: it lies {:.1f} mm off, and {:.1f} mm at the match",
                         check.residual_mm, found.residual_median_mm));
+    if (!skin.known) refuse(skin.why_not);
     if (check.skin_off_mm > limits.max_skin_off_mm)
         refuse(
             fmt::format("the head has moved against its markers: the plan's skin lies {:.1f} mm off where they put it",

@@ -77,10 +77,13 @@ DrawingSettings lit_by(const RigCalibration& rig, const RigidTransform& rig_from
 /// Where the skin lies against where the markers put it, by a short scan.
 struct SkinCheck {
     bool known = false;
-    std::string why_not;     ///< why it is not known, in words
-    std::size_t points = 0;  ///< of skin, scanned
-    double off_mm = 0;       ///< of the plan's point that lies farthest off
-    double bound_mm = 0;     ///< how far off the scan itself may be there, 95 %
+    bool elsewhere = false;   ///< where the markers do not put it, by more than this scan can say; then it is not known
+    std::string why_not;      ///< why it is not known, in words
+    std::size_t points = 0;   ///< of skin, scanned
+    double off_mm = 0;        ///< of the plan's point that lies farthest off
+    double bound_mm = 0;      ///< how far off the scan itself may be there, 95 %
+    std::size_t on_skin = 0;  ///< points that lie over skin where the markers put it,
+    double residual_mm = 0;   ///< and how far off it, median
     double moved_meanwhile_mm = 0;
 };
 
@@ -218,7 +221,8 @@ private:
     void start_overlay();
     std::optional<LightCheck> look_at_light(const Update& update);
     TrackedPose pose_under_white();
-    void compare_skin(const PointCloud& cloud, const RigidTransform& rig_from_ct, SkinCheck& check) const;
+    void compare_skin(const PointCloud& cloud, const RegistrationResult& found, const RigidTransform& rig_from_ct,
+                      SkinCheck& check) const;
     const SkinSurface& skin_of_light() const { return now_ ? now_->skin : planned_.skin; }
     void watch_light(Update& update);
     void note_shown(const OverlayStep& overlay);

@@ -179,7 +179,9 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
         if (skin_off_mm_ > settings_.stop_mm) {
             ruling.of_other = true;
             ruling.headline =
-                fmt::format("Dark: the skin lies {} mm off where the markers put it.", said(skin_off_mm_));
+                std::isfinite(skin_off_mm_)
+                    ? fmt::format("Dark: the skin lies {} mm off where the markers put it.", said(skin_off_mm_))
+                    : "Dark: the skin does not lie where the markers put it.";
             ruling.details = {
                 "The markers have moved on the patient, or the patient under them: fix them, and scan again."};
             return ruling;

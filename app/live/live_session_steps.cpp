@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "app/case_model.h"
@@ -219,7 +220,10 @@ void LiveSession::check_skin(Session& session) {
         set_progress(view_of(SessionState::checking_skin).headline, static_cast<double>(done) / std::max(1, of));
     });
     std::string words = "The skin was not checked: " + check.why_not + "; check it again.";
-    if (check.known) {
+    if (check.elsewhere) {
+        gate_.skin_checked(std::numeric_limits<double>::infinity());
+        words = "Skin checked: it does not lie where the markers put it.";
+    } else if (check.known) {
         gate_.skin_checked(check.off_mm);
         words = fmt::format("Skin checked: the plan's points lie within {:.1f} mm of where the markers put them.",
                             check.off_mm);

@@ -1,5 +1,6 @@
 #include "app/recording/match_fate.h"
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
@@ -89,7 +90,10 @@ void FateOfMatches::take_event(const std::string& text) {
     if (call == "new_match") light_stopped_ = false, skin_off_mm_ = 0;
     if (call == "restart") light_stopped_ = false;
     if (call == "skin_checked") {
-        skin_off_mm_ = event.value("off_mm", 0.0);
+        const auto off = event.find("off_mm");  // null: elsewhere, nobody can say by how much
+        skin_off_mm_ = off == event.end() ? 0
+                       : off->is_number() ? off->get<double>()
+                                          : std::numeric_limits<double>::infinity();
         light_stopped_ |= skin_off_mm_ > LightGateSettings{}.stop_mm;
     }
     if (event.value("stop", false)) light_stopped_ = true;

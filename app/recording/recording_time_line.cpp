@@ -204,8 +204,9 @@ private:
                                            : "Pressed: " + action + ".");
         }
         if (what == "skin_checked")
-            say(event.value("known", false) ? fmt::format("Skin checked: {:.1f} mm off.", event.value("off_mm", 0.0))
-                                            : "Skin checked, without an answer: " + event.value("why_not", "") + ".");
+            say(event.value("elsewhere", false) ? "Skin checked: it does not lie where the markers put it."
+                : event.value("known", false) ? fmt::format("Skin checked: {:.1f} mm off.", event.value("off_mm", 0.0))
+                                              : "Skin checked, without an answer: " + event.value("why_not", "") + ".");
         if (what == "gate" && call == "verify") say("The light on landmarks was said to be right.");
     }
 

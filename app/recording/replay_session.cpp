@@ -227,13 +227,13 @@ private:
     void ask_gate(GateCall call, const Json& event, const std::string& recorded) {
         const Instant at(event.value("at_ns", std::int64_t{0}));
         if (watcher_ && call != GateCall::step && call != GateCall::forbids)
-            watcher_->gate(call, at, event.value("off_mm", 0.0), nullptr);
+            watcher_->gate(call, at, session_events::skin_off_mm(event), nullptr);
         switch (call) {
             case GateCall::verify:
                 gate_.verify(at);
                 return;
             case GateCall::skin_checked:
-                gate_.skin_checked(event.value("off_mm", 0.0));
+                gate_.skin_checked(session_events::skin_off_mm(event));
                 return;
             case GateCall::new_match:
                 gate_.new_match();

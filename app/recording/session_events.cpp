@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "app/case_model.h"
@@ -203,8 +205,8 @@ std::string matched(const Session& session) {
                  {"runner_up_ratio", found.runner_up_ratio},
                  {"agreeing_bases", found.agreeing_bases},
                  {"mirror_ratio", found.mirror_ratio},
-                 {"skin_offset_mm", found.skin_offset_mm},
-                 {"skin_movement_mm", found.skin_movement_mm},
+                 {"skin_offset_mm", found.skin_offset_mm ? Json(*found.skin_offset_mm) : Json()},
+                 {"skin_movement_mm", found.skin_movement_mm ? Json(*found.skin_movement_mm) : Json()},
                  {"landmarks_off_mm", found.landmarks_off_mm ? Json(*found.landmarks_off_mm) : Json()}};
     json["items"] = Json::array();
     json["predicted_mm"] = Json::array();
@@ -234,13 +236,15 @@ std::string updated(const Session& session, const Session::Update& update) {
 }
 
 std::string skin_checked(const SkinCheck& check) {
-    return text_of({{"what", "skin_checked"},
-                    {"known", check.known},
-                    {"why_not", check.why_not},
-                    {"points", check.points},
-                    {"off_mm", check.off_mm},
-                    {"bound_mm", check.bound_mm},
-                    {"moved_meanwhile_mm", check.moved_meanwhile_mm}});
+    Json json = {{"what", "skin_checked"},
+                 {"known", check.known},
+                 {"why_not", check.why_not},
+                 {"points", check.points},
+                 {"off_mm", check.off_mm},
+                 {"bound_mm", check.bound_mm},
+                 {"moved_meanwhile_mm", check.moved_meanwhile_mm}};
+    if (check.elsewhere) json["elsewhere"] = true;
+    return text_of(json);
 }
 
 std::string resumed(const Session& session, const ResumeCheck& check) {
@@ -272,7 +276,7 @@ std::string gate(GateCall call, Instant at, double off_mm, const LightGate::Ruli
     Json json = {{"what", "gate"}, {"call", word_of(call)}};
     if (call == GateCall::verify) json["at_ns"] = at.count(), json["utc"] = today();
     if (call == GateCall::other_light) json["at_ns"] = at.count();
-    if (call == GateCall::skin_checked) json["off_mm"] = off_mm;
+    if (call == GateCall::skin_checked) json["off_mm"] = std::isfinite(off_mm) ? Json(off_mm) : Json();
     if (!ruling) return text_of(json);
     json["at_ns"] = at.count();
     json["trust"] = word_of(ruling->trust);
@@ -283,6 +287,12 @@ std::string gate(GateCall call, Instant at, double off_mm, const LightGate::Ruli
     json["off_mm"] = ruling->off_mm ? Json(*ruling->off_mm) : Json();
     json["sigma_mm"] = ruling->sigma_mm ? Json(*ruling->sigma_mm) : Json();
     return text_of(json);
+}
+
+double skin_off_mm(const Json& event) {
+    const auto off = event.find("off_mm");
+    if (off == event.end()) return 0;
+    return off->is_null() ? std::numeric_limits<double>::infinity() : off->get<double>();
 }
 
 std::string pressed(const std::string& action) {

@@ -18,6 +18,8 @@ std::string skin_checked(const SkinCheck& check);
 std::string resumed(const Session& session, const ResumeCheck& check);
 std::string refused(SessionCall call, const std::exception& why);
 std::string gate(GateCall call, Instant at, double off_mm, const LightGate::Ruling* ruling);
+/// Of the gate's event of a check of the skin; infinite where the skin lies elsewhere, nobody can say by how much.
+double skin_off_mm(const nlohmann::ordered_json& event);
 std::string pressed(const std::string& action);
 std::string said(const std::string& kind, const std::string& headline, const std::vector<std::string>& details);
 std::string room(const RoomFacts& room);

@@ -126,6 +126,8 @@ private:
     }
 
     void take_skin_check(const Json& event) {
+        if (event.value("elsewhere", false))
+            return say("The skin was checked: it does not lie where the markers put it.", event, true);
         const std::optional<double> off_mm = event.value("known", false) ? number(event.at("off_mm")) : std::nullopt;
         if (!off_mm) return say("The skin was checked, without an answer: " + event.value("why_not", "") + ".", event);
         facts_.skin_off_mm = std::max(facts_.skin_off_mm.value_or(0), *off_mm);

@@ -115,6 +115,33 @@ TEST_F(Resume, AHeadThatMovedAgainstItsMarkersIsRefused) {
     }
 }
 
+// From so far off the fit finds some place near by, with a bound of several millimetres: that is no "within 0.9 mm".
+TEST_F(Resume, ACheckOfTheSkinNeverSaysOfAFarHeadThatItIsNear) {
+    int told = 0;
+    for (const Vector3d& way : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1)})
+        for (const double mm : {20.0, 33.0}) {
+            KeptMatch match = kept();
+            Session again = session();
+            again.resume(match);
+            rig().slip_marker(-1, mm * way);
+            const SkinCheck check = again.check_skin();
+            rig().slip_marker(-1, -mm * way);
+            told += check.elsewhere || check.known;
+            EXPECT_FALSE(check.known && check.elsewhere);
+            EXPECT_FALSE(check.known && check.off_mm < 2)
+                << mm << " mm along " << way.transpose() << ": within " << check.off_mm << " mm";
+            if (check.elsewhere) {
+                EXPECT_EQ(check.off_mm, 0) << "it is not known";
+            }
+        }
+    EXPECT_GE(told, 3) << "else this test tells nothing";
+    Session still = session();
+    still.resume(kept());
+    const SkinCheck near = still.check_skin();
+    EXPECT_TRUE(near.known) << near.why_not;
+    EXPECT_LT(near.off_mm, 1);
+}
+
 /// A slipped sticker does not slip back to its place: a room of its own for each.
 TEST_F(Resume, StickersThatWereMovedAreRefused) {
     for (const auto& [marker, slide] : {std::pair(0, Vector3d(1.5, 0, 1.5)), std::pair(-1, Vector3d(2.5, 0, 2.5))}) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/projection/light_gate_scenes.h"
 
 namespace planlight {
@@ -105,6 +107,12 @@ TEST(LightGate, ForbidsLightBeforeItIsLit) {
     EXPECT_TRUE(gate.forbids()) << "Track does not mend it";
     gate.new_match();
     EXPECT_FALSE(gate.forbids());
+    gate.skin_checked(std::numeric_limits<double>::infinity());
+    ASSERT_TRUE(gate.forbids()) << "elsewhere, nobody can say by how much";
+    EXPECT_EQ(gate.forbids()->headline, "Dark: the skin does not lie where the markers put it.");
+    gate.restart();
+    EXPECT_TRUE(gate.forbids()) << "nor this";
+    gate.new_match();
     after(gate, now, 2, seen_at(3));
     EXPECT_TRUE(gate.forbids());
     gate.restart();
