@@ -152,6 +152,23 @@ double off_the_line(const Ray& sight, const Vector3d& p, const Vector2d& pixel, 
     return along.x() * d.y() - along.y() * d.x();
 }
 
+/// Whether the columns' code changes along a picture's lines, and not across them (a camera on its side).
+bool changes_along_lines(const DecodedView& view) {
+    double along = 0, across = 0;
+    for (int y = 0; y + 1 < view.height; ++y)
+        for (int x = 0; x + 1 < view.width; x += 3) {
+            const std::size_t i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
+            const double to_right = std::abs(view.column[i + 1] - view.column[i]),
+                         down = std::abs(view.column[i + static_cast<std::size_t>(view.width)] - view.column[i]);
+            constexpr double kJump_px = 8;
+            if (!(to_right + down < kJump_px)) continue;  // NaN as well
+            along += to_right;
+            across += down;
+        }
+    return along >= across;
+}
+
 /// One left pixel. Either index is empty where the other is used.
 struct Matcher {
     const DecodedView &left, &right;
@@ -159,6 +176,7 @@ struct Matcher {
     const TriangulationSettings& settings;
     const CorrespondenceIndex* by_code;
     const ColumnIndex* by_column;
+    bool along_lines;  ///< see changes_along_lines
 
     void place(int x, int y, PointOutcome& outcome) const {
         using Kind = PointOutcome::Kind;
@@ -172,7 +190,7 @@ struct Matcher {
         if (by_code)
             both_directions(Vector2d(x, y), *sight, *local, outcome);
         else
-            columns_only(*sight, *local, outcome, y);
+            columns_only(*sight, *local, outcome, along_lines ? y : x);
         if (outcome.kind != Kind::point) return;
         if (!(outcome.sigma_mm < kMaxSigma_mm))
             outcome.kind = Kind::disagree;
@@ -195,8 +213,8 @@ struct Matcher {
         place_by_both({pixel, match.pixel, std::hypot(settings.camera_sigma_px, by_code_px * code_sigma)}, rig, *start,
                       settings, outcome);
     }
-    void columns_only(const Ray& sight, const Correspondence& local, PointOutcome& outcome, int y) const {
-        outcome.pixel_in_projector.y() = y;  // the grid of neighbours: the picture's own rows
+    void columns_only(const Ray& sight, const Correspondence& local, PointOutcome& outcome, int across) const {
+        outcome.pixel_in_projector.y() = across;  // the grid of neighbours: the picture's own lines
         const auto near = by_column->nearest(local.code.x(), epipolar_line(sight, rig.right_camera));
         const auto other = near ? ray_through(rig.right_camera, *near) : std::nullopt;
         const auto start = other ? between_rays(sight, *other) : std::nullopt;
@@ -218,7 +236,13 @@ Triangulation triangulate_cameras(const DecodedView& left, const DecodedView& ri
         by_column.emplace(right, rig.right_camera, projector_width);
     else
         by_code.emplace(right, projector_width, projector_height);
-    const Matcher matcher{left, right, rig, settings, by_code ? &*by_code : nullptr, by_column ? &*by_column : nullptr};
+    const Matcher matcher{left,
+                          right,
+                          rig,
+                          settings,
+                          by_code ? &*by_code : nullptr,
+                          by_column ? &*by_column : nullptr,
+                          by_column && changes_along_lines(left)};
     const auto [step_x, step_y] = result.stride;
     const int columns = (left.width + step_x - 1) / step_x, rows = (left.height + step_y - 1) / step_y;
     std::vector<PointOutcome> outcomes(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));

@@ -12,19 +12,33 @@ namespace {
 constexpr int kMaxIterations = 12;
 constexpr double kMaxSigma_mm = 5;  // a worse point says nothing about where the skin is
 
-/// The distance along a line of sight at which the projector lights it with `column`; empty when none is found in the
-/// working volume. Newton's method from the middle of the volume (the column is a smooth, monotone function of depth).
-std::optional<double> depth_of_column(const Ray& sight, double column, const CameraModel& projector, double start) {
-    double t = start;
+/// Where a line of sight meets the plane of light of a column, distance along it: the plane through the projector and
+/// two places of the column beside `row`. A lens bends the plane a little. Empty when they are parallel.
+std::optional<double> depth_on_plane(const Ray& sight, double column, double row, const CameraModel& projector) {
+    const double apart = 0.1 * projector.height;
+    const auto above = ray_through(projector, {column, row - apart}),
+               below = ray_through(projector, {column, row + apart});
+    if (!above || !below) return std::nullopt;
+    const Eigen::Vector3d normal = above->direction.cross(below->direction);
+    const double towards = normal.dot(sight.direction);
+    if (std::abs(towards) < 1e-6 * normal.norm()) return std::nullopt;
+    return normal.dot(above->origin - sight.origin) / towards;
+}
+
+/// The distance along a line of sight at which the projector lights it with `column`; empty when there is none before
+/// both devices. Newton's method from the plane of light: from elsewhere it need not arrive (from 850 mm it does not at
+/// places nearer than 400).
+std::optional<double> depth_of_column(const Ray& sight, double column, const CameraModel& projector) {
+    auto t = depth_on_plane(sight, column, 0.5 * (projector.height - 1), projector);
+    if (!t || !(*t > 0)) return std::nullopt;
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
         Eigen::Matrix<double, 2, 3> by_point;
-        const auto pixel = project(projector, sight.origin + t * sight.direction, by_point);
+        const auto pixel = project(projector, sight.origin + *t * sight.direction, by_point);
         if (!pixel) return std::nullopt;
         const double slope = by_point.row(0).dot(sight.direction);
         if (std::abs(slope) < 1e-4) return std::nullopt;  // the projector looks along the line of sight: no depth in it
         const double step = (column - pixel->x()) / slope;
-        t += step;
-        if (!(t > 0)) return std::nullopt;
+        *t = std::max(*t + step, 0.5 * *t);
         if (std::abs(step) < 1e-6) return t;
     }
     return std::nullopt;
@@ -70,9 +84,7 @@ void place(const DecodedView& right, const Eigen::Vector2d& pixel, const Corresp
     outcome.kind = PointOutcome::Kind::no_partner;
     const auto sight = ray_through(rig.left_camera, pixel);
     if (!sight) return;
-    const double middle =
-        (rig.projector.centre_in_rig() - sight->origin).norm() * 0.5 + 0.5 * std::min(settings.far_mm, 1500.0);
-    const auto by_projector = depth_of_column(*sight, local.code.x(), rig.projector, middle);
+    const auto by_projector = depth_of_column(*sight, local.code.x(), rig.projector);
     if (!by_projector) return;
     const auto by_right =
         depth_from_right(right, rig.right_camera, *sight, local, *by_projector, settings.camera_sigma_px);
@@ -110,9 +122,7 @@ void place_on_plane(const Eigen::Vector2d& pixel, const Correspondence& local, c
     outcome.kind = PointOutcome::Kind::disagree;
     const auto sight = ray_through(rig.left_camera, pixel);
     if (!sight) return;
-    const double middle =
-        (rig.projector.centre_in_rig() - sight->origin).norm() * 0.5 + 0.5 * std::min(settings.far_mm, 1500.0);
-    const auto depth = depth_of_column(*sight, local.code.x(), rig.projector, middle);
+    const auto depth = depth_of_column(*sight, local.code.x(), rig.projector);
     if (!depth) return;
     outcome.p_in_rig = sight->origin + *depth * sight->direction;
     Eigen::Matrix<double, 2, 3> by_point;

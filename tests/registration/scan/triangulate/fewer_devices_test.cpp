@@ -125,6 +125,64 @@ TEST(FewerDevices, OneCameraAndPlanesOfLightPlaceTheBall) {
     EXPECT_LT(scan_from_capture(columns, wrong).raw.cloud.size(), scan.raw.cloud.size() / 2);
 }
 
+/// A device of 20 degrees at `eye` that looks at `target`.
+Optics small_device(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, int width, int height, double focal) {
+    Optics o;
+    const Eigen::Vector3d z = (target - eye).normalized(), x = Eigen::Vector3d::UnitY().cross(z).normalized();
+    o.R << x.transpose(), z.cross(x).transpose(), z.transpose();
+    o.t = -o.R * eye;
+    o.width = width;
+    o.height = height;
+    o.fx = o.fy = focal;
+    o.cx = 0.5 * (width - 1);
+    o.cy = 0.5 * (height - 1);
+    o.distortion[0] = -0.1;
+    return o;
+}
+
+/// A tilted plane before a projector and two cameras beside it.
+Room near_room(double away_mm, double baseline_mm) {
+    const Eigen::Vector3d target(0, 0, away_mm);
+    Room room;
+    room.projector = small_device({0, 0, 0}, target, 800, 600, 1400);
+    room.left = small_device({-baseline_mm, 5, 10}, target, 320, 240, 700);
+    room.right = small_device({baseline_mm, 0, -5}, target, 320, 240, 700);
+    room.surface = plane(target, Eigen::Vector3d(0.1, 0.2, -1).normalized());
+    room.light.white_grey = 190 * away_mm * away_mm / 810000;  // as bright everywhere as at 900 mm
+    return room;
+}
+
+/// The working volume begins at 200 mm before the projector. Errors grow with the distance squared by the baseline:
+/// 0.05 px of code are 0.05 mm at 250 mm over 60 mm, 0.6 mm at 900 mm.
+TEST(FewerDevices, ColumnsPlaceWhatIsNearAndWhatIsFar) {
+    for (const double away_mm : {250.0, 300.0, 350.0, 900.0})
+        for (const double baseline_mm : {60.0, 150.0, 250.0}) {
+            const Room room = near_room(away_mm, baseline_mm);
+            const StripeSettings stripes = fast_stripes(800, 600);
+            const ScanCapture both = capture(room, stripes);
+            const Truth truth = truth_of(room, room.left);
+            const auto lit = static_cast<double>(
+                std::count_if(truth.code.begin(), truth.code.end(), [](const auto& c) { return !std::isnan(c.x()); }));
+            for (const int cameras : {1, 2}) {
+                ScanCapture seen = both;
+                if (cameras == 1) seen.right.clear();
+                const ScanResult scan = scan_from_capture(seen, rig_of(room));
+                std::vector<double> off;
+                for (const auto& p : scan.raw.cloud.points_in_rig)
+                    off.push_back(
+                        std::abs(Eigen::Vector3d(0.1, 0.2, -1).normalized().dot(p - Eigen::Vector3d(0, 0, away_mm))));
+                const std::string where =
+                    fmt::format("{} mm away, baseline {} mm, {} cameras", away_mm, baseline_mm, cameras);
+                EXPECT_GT(static_cast<double>(off.size()) * scan.raw.stride.x * scan.raw.stride.y,
+                          (cameras == 1 ? 0.8 : 0.4) * lit)
+                    << where;
+                if (off.empty()) continue;
+                std::nth_element(off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2), off.end());
+                EXPECT_LT(off[off.size() / 2], 0.05 + 0.05 * away_mm * away_mm / (baseline_mm * 1400)) << where;
+            }
+        }
+}
+
 TEST(FewerDevices, TwoCamerasDoWithoutKnowingTheProjector) {
     RigCalibration rig = ball().rig;
     rig.projector = {};
@@ -152,6 +210,52 @@ TEST(FewerDevices, TwoCamerasAndColumnsOnlyMeetOnTheEpipolarLine) {
     const Off off = off_the_sphere(scan.clean.kept);
     EXPECT_LT(std::abs(off.mean), 0.02);
     EXPECT_LT(off.rms, 0.15);
+}
+
+/// The same camera on its side or upside down: its picture turned by quarters.
+Optics rolled(const Optics& camera, int quarters) {
+    Optics o = camera;
+    o.distortion[2] = o.distortion[3] = 0;
+    for (int k = 0; k < quarters; ++k) {
+        const Eigen::Matrix3d turn = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+        o.R = (turn * o.R).eval();
+        o.t = (turn * o.t).eval();
+        std::swap(o.width, o.height);
+        std::swap(o.fx, o.fy);
+        o.cx = o.cy = 0;
+    }
+    o.cx = 0.5 * (o.width - 1);
+    o.cy = 0.5 * (o.height - 1);
+    return o;
+}
+
+/// Which way up a camera hangs is a number in rig.json and nothing else: of all devices, of columns alone, and of two
+/// cameras without the projector.
+TEST(FewerDevices, CamerasOnTheirSidesAndUpsideDownScanAsWell) {
+    for (const auto& [left_quarters, right_quarters] : {std::pair(1, 1), {2, 0}, {1, 3}}) {
+        Room room = paper_room(sphere(kCentre, kRadius_mm));
+        room.left = rolled(room.left, left_quarters);
+        room.right = rolled(room.right, right_quarters);
+        const StripeSettings stripes = stripes_of(room);
+        const Shot shot = shot_of(std::move(room), stripes);
+        const std::string where = fmt::format("left {}, right {} quarters", left_quarters, right_quarters);
+        const ScanResult scan = scan_from_capture(shot.capture, shot.rig);
+        EXPECT_EQ(scan.rig.verdict, RigState::Verdict::as_calibrated) << where << ": " << scan.rig.sentence;
+        EXPECT_GT(scan.clean.kept.size(), 20000u) << where;
+        EXPECT_LT(off_the_sphere(scan.clean.kept).rms, 0.04) << where;
+        ScanCapture columns = shot.capture;
+        columns.stripes.rows = false;
+        const std::size_t n = stripe_sequence(columns.stripes).size();
+        columns.left.resize(n);
+        columns.right.resize(n);
+        for (const bool projector : {true, false}) {
+            RigCalibration rig = shot.rig;
+            if (!projector) rig.projector = {};
+            const ScanResult by_columns = scan_from_capture(columns, rig);
+            EXPECT_GT(by_columns.clean.kept.size(), 15000u) << where << (projector ? "" : ", no projector");
+            EXPECT_LT(off_the_sphere(by_columns.clean.kept).rms, 0.15) << where << (projector ? "" : ", no projector");
+        }
+    }
 }
 
 TEST(FewerDevices, OneCameraWithoutAProjectorIsRefused) {
