@@ -208,6 +208,12 @@ void judge_fit(const ScanResult& scan, const RigCalibration& rig) {
             "Use the rig.json of this rig; check that left and right are not swapped and no picture is mirrored; if "
             "the rig was "
             "moved, calibrate it again.");
+    if (scan.clean.kept.empty() && scan.left.saturated > scan.left.decoded + scan.left.uncertain)
+        throw CheckFailedError(
+            fmt::format(
+                "no skin was found in the capture: the left picture is saturated at {} pixels and decoded at {}",
+                scan.left.saturated, scan.left.decoded),
+            "Shorten the exposure, close the aperture or dim lamps and projector, and capture again.");
     if (scan.clean.kept.empty())
         throw CheckFailedError(
             fmt::format("no skin was found in the capture ({} of {} pixels of the left picture decoded)",

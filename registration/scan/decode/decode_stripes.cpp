@@ -11,6 +11,7 @@
 #include "planning_io/types/statistics.h"
 #include "registration/scan/decode/decode_blocks.h"
 #include "registration/scan/decode/fringe_order.h"
+#include "registration/scan/decode/second_harmonic.h"
 
 namespace planlight {
 namespace {
@@ -24,6 +25,7 @@ using Bytes = const std::uint8_t*;
 struct Direction {
     std::vector<Bytes> gray, inverse, phase;
     std::vector<std::vector<Bytes>> further;  ///< fringes of the further frequencies
+    std::vector<SecondHarmonic> harmonics;    ///< of all frequencies; none but of three shifts
     int size = 0;                             ///< of the projector along it, pixels
 
     std::vector<Bytes>& fringes(int frequency) {
@@ -74,6 +76,20 @@ Frames sort_frames(std::span<const GrayImage> frames, const StripeSettings& stri
         }
     }
     return sorted;
+}
+
+/// Where it cannot be measured, so little is lit that it is taken for none.
+void measure_harmonics(Frames& frames, std::size_t pixels) {
+    for (Direction& direction : frames.directions) {
+        direction.harmonics.resize(1 + direction.further.size());
+        for (std::size_t k = 0; k < direction.harmonics.size(); ++k) {
+            const std::vector<Bytes>& shifts = direction.fringes(static_cast<int>(k));
+            if (shifts.size() != 3) continue;
+            const auto share =
+                measure_second_harmonic({shifts[0], shifts[1], shifts[2]}, frames.white, frames.black, pixels);
+            if (share) direction.harmonics[k] = SecondHarmonic(*share);
+        }
+    }
 }
 
 /// Pixels to measure the noise on: runs of neighbours, so that each cache line read is used, evenly over the picture.
@@ -137,8 +153,8 @@ struct Work {
 };
 
 /// Amplitude and phase (projector pixels, or turns with a period of 1) of one frequency.
-void decode_phase(const std::vector<Bytes>& phase, float period, std::size_t begin, std::size_t n, Block& b,
-                  float* amplitude, float* phase_px) {
+void decode_phase(const std::vector<Bytes>& phase, const SecondHarmonic& harmonic, float period, std::size_t begin,
+                  std::size_t n, Block& b, float* amplitude, float* phase_px) {
     const std::size_t steps = phase.size();
     if (steps == 8 && amplitude == b.amplitude.data()) {  // the first: the brightest value is set, not raised
         std::array<Bytes, 8> frames;
@@ -156,6 +172,7 @@ void decode_phase(const std::vector<Bytes>& phase, float period, std::size_t beg
     }
     kernels::finish_phase(b.sine_sum.data(), b.cosine_sum.data(), 2 / static_cast<float>(steps), period, amplitude,
                           phase_px, n);
+    harmonic.take_out(phase_px, amplitude, period, n);
 }
 
 /// One standard deviation of a phase in turns, by the inverse of its amplitude.
@@ -171,7 +188,8 @@ void order_by_fringes(const Direction& direction, const StripeSettings& stripes,
     others.count = direction.further.size();
     others.first_sigma_turns = sigma_turns(stripes.phase_steps, noise_grey);
     for (std::size_t k = 0; k < others.count; ++k) {
-        decode_phase(direction.further[k], 1, begin, n, b, b.further_amplitude[k].data(), b.further_turns[k].data());
+        decode_phase(direction.further[k], direction.harmonics[k + 1], 1, begin, n, b, b.further_amplitude[k].data(),
+                     b.further_turns[k].data());
         others.amplitude[k] = b.further_amplitude[k].data();
         others.turns[k] = b.further_turns[k].data();
         others.by_period[k] = static_cast<float>(stripes.phase_period_px / stripes.order_periods_px[k]);
@@ -186,8 +204,8 @@ void order_by_fringes(const Direction& direction, const StripeSettings& stripes,
 void decode_fringes(const Direction& direction, const StripeSettings& stripes, std::size_t begin, std::size_t n,
                     Block& b) {
     b.top.fill(0);
-    decode_phase(direction.phase, static_cast<float>(stripes.phase_period_px), begin, n, b, b.amplitude.data(),
-                 b.phase_px.data());
+    decode_phase(direction.phase, direction.harmonics[0], static_cast<float>(stripes.phase_period_px), begin, n, b,
+                 b.amplitude.data(), b.phase_px.data());
 }
 
 /// Then the rest of the code.
@@ -244,9 +262,10 @@ kernels::Counts decode_into(const Frames& frames, const StripeSettings& stripes,
 
 DecodedView decode_stripes(std::span<const GrayImage> frames, const StripeSettings& stripes,
                            const DecodeSettings& settings) {
-    const Frames sorted = sort_frames(frames, stripes);
+    Frames sorted = sort_frames(frames, stripes);
     DecodedView view = empty_view(frames[0].width, frames[0].height, stripes.rows);
     const std::size_t pixels = frames[0].pixels.size();
+    measure_harmonics(sorted, pixels);
     view.noise_grey =
         settings.noise_grey > 0 ? settings.noise_grey : measure_noise(sorted.directions[0], pixels, settings);
     const kernels::Limits limits{static_cast<float>(settings.min_modulation),

@@ -14,6 +14,9 @@ constexpr std::size_t kLanes = 16;
 typedef float Lanes __attribute__((vector_size(4 * kLanes)));
 typedef std::int32_t Mask __attribute__((vector_size(4 * kLanes)));
 
+constexpr float kSlack_sigma = 4.5f;
+constexpr float kNoPlace = 1e9f;  ///< of an order that lies outside the projector's picture
+
 /// Off the nearest whole number, for numbers under 2^22.
 PLANLIGHT_INLINE void off_whole(Lanes& turns) {
     constexpr float kRound = 12582912;  // 1.5 * 2^23: adding it leaves no place for a fraction
@@ -33,6 +36,8 @@ PLANLIGHT_CLONES void find_order(const float* phase_px, const float* amplitude, 
         std::memcpy(&first, phase_px + begin, sizeof first);
         std::memcpy(&first_amplitude, amplitude + begin, sizeof first);
         const Lanes own = others.first_sigma_turns / first_amplitude;
+        // How far outside the picture noise can put a pixel of its rim.
+        const Lanes slack = period * (kSlack_sigma * own + sure.allowed_turns);
         for (std::size_t k = 0; k < count; ++k) {
             Lanes its_amplitude, phase;
             std::memcpy(&phase, others.turns[k] + begin, sizeof phase);
@@ -41,7 +46,7 @@ PLANLIGHT_CLONES void find_order(const float* phase_px, const float* amplitude, 
             weight[k] = 1 / (sigma * sigma + carried * carried + sure.allowed_turns * sure.allowed_turns);
             turns[k] = first * (others.by_period[k] / period) - phase;
         }
-        Lanes best = Lanes{} + 1e9f, second = best, best_order = {};
+        Lanes best = Lanes{} + kNoPlace, second = best, best_order = {};
         for (int order = 0; order < orders; ++order) {
             Lanes sum = {};
             const auto whole = static_cast<float>(order);
@@ -50,6 +55,8 @@ PLANLIGHT_CLONES void find_order(const float* phase_px, const float* amplitude, 
                 off_whole(off);
                 sum += weight[k] * off * off;
             }
+            const Lanes place = first + whole * period;
+            sum = (place >= -0.5f - slack) & (place < size - 0.5f + slack) ? sum : Lanes{} + kNoPlace;
             const Mask better = sum < best;
             const Lanes loser = better ? best : sum;
             second = loser < second ? loser : second;

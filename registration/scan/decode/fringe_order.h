@@ -27,8 +27,8 @@ struct Sureness {
 };
 
 /// The projector pixel of every pixel: that order of the first fringe (`phase_px` in [-period/2, period/2],
-/// `amplitude`) at which all phases agree best. NaN where none agrees, another agrees nearly as well, or the pixel lies
-/// outside `size`.
+/// `amplitude`) at which all phases agree best, among the places within `size` (and what noise may add to them). NaN
+/// where none agrees, another agrees nearly as well, or the pixel lies outside `size`.
 void find_order(const float* phase_px, const float* amplitude, const Fringes& others, const Sureness& sure,
                 float period, float size, float* pixel, std::size_t n);
 

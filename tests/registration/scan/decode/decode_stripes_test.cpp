@@ -8,6 +8,7 @@
 
 #include "planning_io/types/statistics.h"
 #include "registration/scan/decode/gray_code.h"
+#include "registration/scan/decode/second_harmonic.h"
 #include "tests/registration/scan/stripe_room.h"
 
 namespace planlight {
@@ -85,6 +86,32 @@ TEST(DecodeStripes, APlaneThroughGammaBlurAndNoise) {
     // A convention off by half a pixel would show as 0.5 here.
     EXPECT_LT(std::abs(mean(e.column)), 0.02);
     EXPECT_LT(std::abs(mean(e.row)), 0.02);
+}
+
+/// Three shifts cannot tell a gamma's second harmonic from their fringe: a gamma of 2.2 moved the code by up to a
+/// twentieth of a period (3 projector pixels of 64) without a word. It shows in the amplitudes.
+TEST(DecodeStripes, AGammaMovesNoFringesOfThreeShifts) {
+    for (const double period_px : {16.0, 64.0})
+        for (const double gamma : {1.0, 1.8, 2.2}) {
+            Room room = paper_room(plane(kPlace, kTilted));
+            room.light.gamma = gamma;
+            StripeSettings stripes = stripes_of(room);
+            stripes.phase_steps = 3;
+            stripes.phase_period_px = period_px;
+            const auto frames = photograph(room, room.left, stripes, 7);
+            const auto share = largest_second_harmonic(frames, stripes);
+            ASSERT_TRUE(share);
+            // cos^2g has (g - 1) / (g + 2) of it; blur takes most of it from fringes of 16 pixels, and little of 64.
+            if (period_px == 64 || gamma == 1) {
+                EXPECT_NEAR(*share, (gamma - 1) / (gamma + 2), 0.02) << gamma;
+            }
+            const Errors e = errors_of(decode_stripes(frames, stripes), truth_of(room, room.left));
+            EXPECT_GT(static_cast<double>(e.column.size()), 0.95 * static_cast<double>(e.lit)) << gamma;
+            EXPECT_LT(static_cast<double>(e.wrong), 1e-3 * static_cast<double>(e.lit)) << gamma;
+            // Noise of 1.5 grey; at the crests up to seven times that of a pure fringe.
+            EXPECT_LT(median_size(e.column), 0.008 * period_px) << gamma << " " << period_px;
+            EXPECT_LT(median_size(e.row), 0.008 * period_px) << gamma << " " << period_px;
+        }
 }
 
 TEST(DecodeStripes, NoiseIsMeasuredAndSigmaIsHonest) {

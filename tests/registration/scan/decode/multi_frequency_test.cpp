@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "planning_io/types/error.h"
@@ -67,6 +70,18 @@ TEST(MultiFrequency, AnUncertainOrderIsDroppedAndNeverGuessed) {
     }
 }
 
+/// Three shifts of every frequency under a gamma of 2.2.
+TEST(MultiFrequency, ThreeShiftsUnderAGammaAreReadAsWell) {
+    const Room room = paper_room(sphere(kCentre, 80));
+    StripeSettings stripes = multi_frequency_stripes(800, 600);
+    stripes.phase_steps = stripes.order_steps = 3;
+    const auto frames = photograph(room, room.left, stripes, 5);
+    EXPECT_TRUE(check_sequence(frames, stripes).problems.empty());
+    const Codes codes = codes_of(decode_stripes(frames, stripes), truth_of(room, room.left));
+    EXPECT_GT(static_cast<double>(codes.decoded), 0.85 * static_cast<double>(codes.lit));
+    EXPECT_LT(static_cast<double>(codes.wrong), 1e-3 * static_cast<double>(codes.lit));
+}
+
 TEST(MultiFrequency, OnAPlaneNoOrderIsWrong) {
     Room room = modern_room(plane(Eigen::Vector3d(120, -40, 300), Eigen::Vector3d(0.35, 0.2, -1).normalized()));
     room.light.white_grey = 60;
@@ -90,6 +105,49 @@ TEST(MultiFrequency, ABallIsScannedAsTrulyAsByAGrayCode) {
                    rms);
         EXPECT_GT(scan.raw.cloud.size(), 30000u);
         EXPECT_LT(rms, 0.05);
+    }
+}
+
+/// Each camera pixel sees the projector pixel of its own number.
+std::vector<GrayImage> seen_one_to_one(const StripeSettings& stripes, int height, double noise_grey) {
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(0, noise_grey);
+    std::vector<GrayImage> frames;
+    for (const StripePattern& pattern : stripe_sequence(stripes)) {
+        const RgbImage picture = draw_stripes(stripes, pattern);
+        GrayImage frame(stripes.width, height);
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < stripes.width; ++x)
+                frame.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(stripes.width) +
+                             static_cast<std::size_t>(x)] =
+                    static_cast<std::uint8_t>(
+                        std::clamp(std::lround(20 + 0.6 * picture.at(x, 0)[0] + noise(random)), 0l, 255l));
+        frames.push_back(std::move(frame));
+    }
+    return frames;
+}
+
+/// Where all periods divide the projector's width, the phases of a place beyond one rim are those at the other: no
+/// place for light to come from, and no rival. Only what noise could put across the rim stays open.
+TEST(MultiFrequency, WholePeriodsOverThePictureLoseNoRim) {
+    for (const auto& [width, period, others] :
+         {std::tuple{1024, 16.0, std::vector{1024.0 / 63, 1024.0 / 56}}, {1024, 32.0, std::vector{1024.0, 128.0}}}) {
+        StripeSettings stripes;
+        stripes.width = width;
+        stripes.height = 16;
+        stripes.rows = stripes.inverse = false;
+        stripes.phase_period_px = period;
+        stripes.order_periods_px = others;
+        const DecodedView view = decode_stripes(seen_one_to_one(stripes, 32, 1.5), stripes);
+        std::size_t lost = 0;
+        for (std::size_t i = 0; i < view.column.size(); ++i) {
+            const double x = static_cast<double>(i % static_cast<std::size_t>(width));
+            const bool rim = x < 2 || x > width - 3;
+            lost += std::isnan(view.column[i]) && !rim;
+            if (std::isnan(view.column[i])) continue;
+            EXPECT_NEAR(view.column[i], x, 1);
+        }
+        EXPECT_LT(static_cast<double>(lost), 1e-3 * static_cast<double>(view.column.size())) << period;
     }
 }
 
