@@ -215,7 +215,8 @@ std::optional<PoseFit> fit_pose(const RigCalibration& rig, const std::vector<Pat
         damping = std::max(1e-9, damping * 0.1);
         if (twist.head<3>().norm() < 1e-8 && twist.tail<3>().norm() < 1e-6) break;
     }
-    PoseFit fit{pose};
+    PoseFit fit;
+    fit.rig_from_patient = pose;
     fit.residual_px = std::sqrt(now->squared_px / static_cast<double>(sightings.size()));
     fit.chi_square = now->chi_square;
     return fit;
