@@ -15,6 +15,20 @@
 namespace planlight {
 namespace {
 
+/// Where light of the plan lies: both ends and the middle of what is drawn, labels and marks aside, in patient.
+std::vector<Eigen::Vector3d> places_of_light(const PlanDrawing& drawing, const RigidTransform& patient_from_ct) {
+    std::vector<Eigen::Vector3d> places;
+    for (const Stroke& stroke : drawing.strokes) {
+        const auto& points = stroke.points_in_ct;
+        const bool of_item = stroke.item >= 0 && stroke.kind != StrokeKind::tick && stroke.kind != StrokeKind::label &&
+                             stroke.kind != StrokeKind::check_mark;
+        if (!of_item || points.empty()) continue;
+        for (const auto& p : {points.front(), points[points.size() / 2], points.back()})
+            places.push_back(patient_from_ct * p);
+    }
+    return places;
+}
+
 /// What of the drawing is lit while one item is looked at: the labels of all others are dark.
 PlanDrawing lit_with(PlanDrawing drawing, std::size_t item, bool others_lit) {
     if (!others_lit)
@@ -222,6 +236,7 @@ void Session::start_overlay() {
     const bool others_lit = !lit_landmark_ && settings_.overlay.render.others > 0;
     checker_.emplace(looked_at ? lit_with(lit_drawing(), *looked_at, others_lit) : lit_drawing(), skin_of_light(), rig_,
                      settings_.check_light, looked_at);
+    tracker_.set_places(places_of_light(lit_drawing(), registration_->patient_from_ct));
     watch_.emplace(rig_, settings_.light_cause);
     jumps_.emplace(rig_);
     shown_.clear();

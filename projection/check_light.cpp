@@ -8,6 +8,7 @@
 #include "projection/far_light.h"
 #include "projection/figure_patch.h"
 #include "projection/find_light.h"
+#include "projection/light_depth.h"
 #include "projection/stroke_places.h"
 
 namespace planlight {
@@ -16,38 +17,92 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// What both cameras say of a segment: the mean by weight where they agree; the nearer one where they do not (one of
-/// them took something else for the light).
-SeenSegment joined(const StrokeSegment& segment, const std::array<CameraLook, 2>& looks,
-                   const CheckLightSettings& settings) {
+/// A segment as both cameras see it.
+struct LookedAt {
+    SeenSegment segment;  ///< without what is joined of the two
+    std::array<CameraLook, 2> looks;
+    std::array<double, 2> slopes{};  ///< `sideways_slope` of the cameras
+};
+
+LookedAt looked_at(const StrokeSegment& segment, const std::array<CameraLook, 2>& looks, const RigCalibration& rig,
+                   const RigidTransform& rig_from_ct) {
     const StrokePlace& middle = segment.middle();
-    SeenSegment result;
-    result.item = segment.item;
-    result.p_in_ct = middle.p_in_ct;
-    result.sideways_in_ct = middle.sideways_in_ct;
-    result.normal_in_ct = middle.normal_in_ct;
-    result.tick = segment.tick;
-    double weight = 0, sum = 0;
+    LookedAt result;
+    SeenSegment& seen = result.segment;
+    seen.item = segment.item;
+    seen.p_in_ct = middle.p_in_ct;
+    seen.sideways_in_ct = middle.sideways_in_ct;
+    seen.normal_in_ct = middle.normal_in_ct;
+    seen.tick = segment.tick;
+    result.looks = looks;
+    const RigidTransform ct_from_rig = rig_from_ct.inverse();
     for (std::size_t c = 0; c < 2; ++c) {
-        if (looks[c].asked) result.background += looks[c].background / (looks[0].asked && looks[1].asked ? 2 : 1);
+        result.slopes[c] =
+            sideways_slope(seen, ct_from_rig * (c == 0 ? rig.left_camera : rig.right_camera).centre_in_rig());
+        if (looks[c].asked) seen.background += looks[c].background / (looks[0].asked && looks[1].asked ? 2 : 1);
         if (!looks[c].light) continue;
-        result.seen = true;
-        result.by_camera_mm[c] = looks[c].light->off_mm;
-        result.brighter = std::max(result.brighter, looks[c].light->brighter);
-        const double w = 1 / (std::pow(looks[c].light->sigma_mm, 2) + std::pow(settings.place_sigma_mm, 2));
-        weight += w;
-        sum += w * looks[c].light->off_mm;
+        seen.seen = true;
+        seen.by_camera_mm[c] = looks[c].light->off_mm;
+        seen.brighter = std::max(seen.brighter, looks[c].light->brighter);
     }
+    return result;
+}
+
+double variance_of(const CameraLook& look, const CheckLightSettings& settings) {
+    return std::pow(look.light->sigma_mm, 2) + std::pow(settings.place_sigma_mm, 2);
+}
+
+/// How far above the drawing's skin an item's light lies; 0 where that is not told, or not clearly from nothing.
+double depth_of(const std::vector<LookedAt*>& item, const CheckLightSettings& settings) {
+    std::vector<SeenDepth> apart;
+    for (const LookedAt* s : item)
+        if (s->looks[0].light && s->looks[1].light)
+            apart.push_back({s->looks[0].light->off_mm - s->looks[1].light->off_mm, s->slopes[1] - s->slopes[0],
+                             std::sqrt(variance_of(s->looks[0], settings) + variance_of(s->looks[1], settings))});
+    const auto depth = fit_depth(apart);
+    const double least_mm = depth ? std::max(settings.least_depth_mm, 3 * depth->sigma_mm) : 0;
+    return depth && std::abs(depth->mm) > least_mm ? depth->mm : 0;
+}
+
+/// What both cameras say of a segment on skin that is `depth_mm` higher: the mean by weight where they agree; the
+/// nearer one where they do not (one of them took something else for the light).
+SeenSegment joined(const LookedAt& looked, double depth_mm, const CheckLightSettings& settings) {
+    SeenSegment result = looked.segment;
     if (!result.seen) return result;
+    double weight = 0, sum = 0, flat = 0;
+    std::array<double, 2> off{};
+    for (std::size_t c = 0; c < 2; ++c) {
+        if (!looked.looks[c].light) continue;
+        const double w = 1 / variance_of(looked.looks[c], settings);
+        off[c] = looked.looks[c].light->off_mm + depth_mm * looked.slopes[c];
+        weight += w;
+        sum += w * off[c];
+        flat += w * looked.looks[c].light->off_mm;
+    }
     result.off_mm = sum / weight;
+    result.by_depth_mm = (sum - flat) / weight;
     result.sigma_mm = 1 / std::sqrt(weight);
     if (result.by_camera_mm[0] && result.by_camera_mm[1]) {
-        const double apart = std::abs(looks[0].light->off_mm - looks[1].light->off_mm);
-        const double a = std::abs(looks[0].light->off_mm), b = std::abs(looks[1].light->off_mm);
-        if (apart > 1) result.off_mm = looks[a < b ? 0 : 1].light->off_mm;
+        const double apart = std::abs(off[0] - off[1]);
+        const std::size_t nearer = std::abs(off[0]) < std::abs(off[1]) ? 0 : 1;
+        if (apart > 1) {
+            result.off_mm = off[nearer];
+            result.by_depth_mm = off[nearer] - *result.by_camera_mm[nearer];
+        }
         result.sigma_mm = std::hypot(result.sigma_mm, apart / 2);
     }
     return result;
+}
+
+/// Item by item, for each has its own height of the skin.
+void join(std::vector<LookedAt>& looked, const CheckLightSettings& settings, LightCheck& check) {
+    std::vector<std::vector<LookedAt*>> of_item(check.items.size());
+    for (LookedAt& one : looked) of_item[static_cast<std::size_t>(one.segment.item)].push_back(&one);
+    for (std::size_t i = 0; i < of_item.size(); ++i) {
+        const double depth_mm = depth_of(of_item[i], settings);
+        if (depth_mm != 0) check.items[i].depth_mm = depth_mm;
+        for (const LookedAt* one : of_item[i]) check.segments.push_back(joined(*one, depth_mm, settings));
+    }
 }
 
 /// The shift along the skin that explains an item's segments best: least squares over their sides, with Huber weights.
@@ -132,9 +187,9 @@ void sum_up_items(LightCheck& check) {
     }
 }
 
-/// Who sees a segment: the projector lights all of it, and which cameras see it freely.
+/// Who sees a segment: the projector lights all of it, and which cameras see it freely where it can be measured.
 struct Sight {
-    bool known = false, lit = false;
+    bool known = false, lit = false, measurable = false;
     std::array<bool, 2> seen{};
 };
 
@@ -158,18 +213,22 @@ struct LightChecker::Parts {
     Sight sight_of(const StrokeSegment& segment, const RigidTransform& rig_from_ct) const;
     void look_around(const RigidTransform& rig_from_ct);
     void look_at(const FigurePatch& patch, const Sight& sight, const RigidTransform& rig_from_ct,
-                 const StereoFrame& pictures, LightCheck& check) const;
+                 const StereoFrame& pictures, std::vector<LookedAt>& looked) const;
     std::optional<double> far_light(const RigidTransform& rig_from_ct, const StereoFrame& pictures) const;
 };
 
 Sight LightChecker::Parts::sight_of(const StrokeSegment& segment, const RigidTransform& rig_from_ct) const {
-    const auto free = [&](const CameraModel& device) {
+    const auto free = [&](const CameraModel& device, double steepest) {
         for (const StrokePlace* place : {&segment.places.front(), &segment.middle(), &segment.places.back()})
-            if (!freely_seen(*place, skin, device, rig_from_ct, settings.steepest)) return false;
+            if (!freely_seen(*place, skin, device, rig_from_ct, steepest)) return false;
         return true;
     };
-    Sight sight{true, free(rig.projector), {}};
-    if (sight.lit) sight.seen = {free(rig.left_camera), free(rig.right_camera)};
+    Sight sight;
+    sight.known = true;
+    sight.measurable = free(rig.projector, settings.steepest);
+    sight.lit = sight.measurable || free(rig.projector, settings.steepest_lit);
+    if (sight.measurable)
+        sight.seen = {free(rig.left_camera, settings.steepest), free(rig.right_camera, settings.steepest)};
     return sight;
 }
 
@@ -190,13 +249,13 @@ void LightChecker::Parts::look_around(const RigidTransform& rig_from_ct) {
 
 /// A small figure counts as two stretches, square to each other.
 void LightChecker::Parts::look_at(const FigurePatch& patch, const Sight& sight, const RigidTransform& rig_from_ct,
-                                  const StereoFrame& pictures, LightCheck& check) const {
+                                  const StereoFrame& pictures, std::vector<LookedAt>& looked) const {
     std::array<std::array<CameraLook, 2>, 2> by_camera;
     if (sight.seen[0]) by_camera[0] = find_figure(patch, rig.left_camera, rig_from_ct, pictures.left, settings);
     if (sight.seen[1]) by_camera[1] = find_figure(patch, rig.right_camera, rig_from_ct, pictures.right, settings);
     for (std::size_t side = 0; side < 2; ++side) {
         const std::array<CameraLook, 2> looks{by_camera[0][side], by_camera[1][side]};
-        if (looks[0].asked || looks[1].asked) check.segments.push_back(joined(patch.sides[side], looks, settings));
+        if (looks[0].asked || looks[1].asked) looked.push_back(looked_at(patch.sides[side], looks, rig, rig_from_ct));
     }
 }
 
@@ -204,10 +263,10 @@ std::optional<double> LightChecker::Parts::far_light(const RigidTransform& rig_f
                                                      const StereoFrame& pictures) const {
     std::vector<SightedSegment> lit;
     for (std::size_t i = 0; i < segments.size(); ++i)
-        if (sights[i].lit && !segments[i].tick) lit.push_back({&segments[i], sights[i].seen});
+        if (sights[i].measurable && !segments[i].tick) lit.push_back({&segments[i], sights[i].seen});
     for (std::size_t i = 0; i < patches.size(); ++i)
         for (const StrokeSegment& piece : patches[i].outline)
-            if (sights[segments.size() + i].lit)
+            if (sights[segments.size() + i].measurable)
                 lit.push_back({&piece, sights[segments.size() + i].seen, patches[i].small_ring});
     return find_far_light(lit, skin, rig, rig_from_ct, pictures);
 }
@@ -236,25 +295,30 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
     p.look_around(rig_from_ct);
     for (std::size_t i = 0; i < p.items.size(); ++i)
         check.items[i].lit =
-            p.apart[i] && freely_seen(*p.apart[i], p.skin, p.rig.projector, rig_from_ct, p.settings.steepest);
+            p.apart[i] && freely_seen(*p.apart[i], p.skin, p.rig.projector, rig_from_ct, p.settings.steepest_lit);
     for (std::size_t i = 0; i < p.segments.size(); ++i)
         if (p.sights[i].lit) check.items[static_cast<std::size_t>(p.segments[i].item)].lit = true;
     const auto segments = p.segments.size();
     const std::size_t most = std::max<std::size_t>(1, p.settings.most_segments);
     const std::size_t step = std::max<std::size_t>(1, (p.sights.size() + most - 1) / most);
+    std::vector<LookedAt> looked;
     for (std::size_t i = p.turn++ % step; i < p.sights.size(); i += step) {
-        if (!p.sights[i].lit) continue;
+        const Sight& sight = p.sights[i];
+        if (!sight.lit) continue;
+        const StrokeSegment& segment = i < segments ? p.segments[i] : p.patches[i - segments].extent;
+        const int counts = i >= segments ? 2 : segment.tick ? 0 : 1;
+        check.lit += counts;
+        check.items[static_cast<std::size_t>(segment.item)].lit_segments += counts;
         if (i >= segments) {
-            p.look_at(p.patches[i - segments], p.sights[i], rig_from_ct, frame, check);
+            p.look_at(p.patches[i - segments], sight, rig_from_ct, frame, looked);
             continue;
         }
-        const StrokeSegment& segment = p.segments[i];
         std::array<CameraLook, 2> looks;
-        if (p.sights[i].seen[0]) looks[0] = find_light(segment, p.rig.left_camera, rig_from_ct, frame.left, p.settings);
-        if (p.sights[i].seen[1])
-            looks[1] = find_light(segment, p.rig.right_camera, rig_from_ct, frame.right, p.settings);
-        if (looks[0].asked || looks[1].asked) check.segments.push_back(joined(segment, looks, p.settings));
+        if (sight.seen[0]) looks[0] = find_light(segment, p.rig.left_camera, rig_from_ct, frame.left, p.settings);
+        if (sight.seen[1]) looks[1] = find_light(segment, p.rig.right_camera, rig_from_ct, frame.right, p.settings);
+        if (looks[0].asked || looks[1].asked) looked.push_back(looked_at(segment, looks, p.rig, rig_from_ct));
     }
+    join(looked, p.settings, check);
     sum_up_items(check);
     sum_up(check);
     constexpr double kMostSeen = 0.8, kAside_mm = 1;  // else light is where it was looked for

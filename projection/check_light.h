@@ -25,7 +25,9 @@ struct CheckLightSettings {
     double least_peak_grey = 1.5;     ///< and by this
     double least_px_per_mm = 0.5;     ///< a camera that sees the skin more obliquely or from farther is not asked
     double steepest = 1.2;            ///< radians between the skin's normal and projector or camera
+    double steepest_lit = 1.31;       ///< up to which the projector lights it (`RenderSettings::steepest`)
     double place_sigma_mm = 0.1;      ///< of one segment beside its noise: texture, the skin's own shape
+    double least_depth_mm = 0.3;      ///< of an item's light above or below the drawing's skin, or three sigmas of it
     std::size_t most_segments = 120;  ///< looked at in one frame; of more they take turns
     bool far_too = true;              ///< light that is not where it belongs is looked for farther off (`far_mm`)
     int look_again_every = 8;         ///< frames: who sees which segment is asked anew in so many parts
@@ -36,24 +38,29 @@ struct SeenSegment {
     int item = -1;
     Eigen::Vector3d p_in_ct, sideways_in_ct;  ///< its middle; unit vector along the skin, square to the stroke
     Eigen::Vector3d normal_in_ct;             ///< of the skin
-    bool tick = false;      ///< an arm of a tick, which tells of the way along its line; counted only where it is seen
-    bool seen = false;      ///< light was found; false: none within reach, though it should be seen
-    double off_mm = 0;      ///< of the light along `sideways_in_ct`
-    double sigma_mm = 0;    ///< one standard deviation of that
-    double background = 0;  ///< grey of the skin beside the stroke, mean of the cameras that looked
-    double brighter = 0;    ///< the light than that skin, as a share of it; by the camera that sees more of it
+    bool tick = false;       ///< an arm of a tick, which tells of the way along its line; counted only where it is seen
+    bool seen = false;       ///< light was found; false: none within reach, though it should be seen
+    double off_mm = 0;       ///< of the light along `sideways_in_ct`, on the skin as high as it is there
+    double by_depth_mm = 0;  ///< the part of it that is seen by its height alone (`ItemLight::depth_mm`)
+    double sigma_mm = 0;     ///< one standard deviation of that
+    double background = 0;   ///< grey of the skin beside the stroke, mean of the cameras that looked
+    double brighter = 0;     ///< the light than that skin, as a share of it; by the camera that sees more of it
     std::array<std::optional<double>, 2> by_camera_mm;  ///< as the left and the right camera see it
 };
 
 /// Where one item's light lies against the plan.
 struct ItemLight {
     std::string name;
-    bool lit = false;  ///< the projector's light reaches it; a camera may not see it, or not apart from other light
-    int segments = 0, seen = 0;  ///< stretches that should be seen by a camera, and those where light was found
+    bool lit = false;      ///< the projector's light reaches it; a camera may not see it, or not apart from other light
+    int lit_segments = 0;  ///< stretches of it that the projector lights
+    int segments = 0, seen = 0;  ///< of these, what should be seen by a camera, and where light was found
     Eigen::Vector3d shift_in_ct = Eigen::Vector3d::Zero();  ///< of the light along the skin, mm
     double off_mm = 0;                                      ///< its length, in the directions that the strokes tell
     double sigma_mm = 0;                                    ///< one standard deviation of it
     bool one_direction_only = false;                        ///< a straight line tells nothing along itself
+    /// Of the light above the drawing's skin as both cameras see it, mm: the skin there has risen since the scan, or
+    /// sunk. Empty where they do not tell it, or not clearly from nothing.
+    std::optional<double> depth_mm;
     bool known() const { return seen > 0; }
     /// Enough of it was seen to stand for all of it: one stretch of four that lies right says nothing of the others.
     bool told() const { return seen > 0 && 2 * seen >= segments; }
@@ -63,8 +70,8 @@ struct ItemLight {
 struct LightCheck {
     std::vector<ItemLight> items;  ///< as in the drawing
     std::vector<SeenSegment> segments;
-    int expected = 0, seen = 0;  ///< segments
-    double off_mm = 0;           ///< 95 % of the segments' sides lie within this; 0 when nothing was seen
+    int lit = 0, expected = 0, seen = 0;  ///< segments: lit by the projector, of these to be seen by a camera, seen
+    double off_mm = 0;                    ///< 95 % of the segments' sides lie within this; 0 when nothing was seen
     double median_mm = 0;
     double most_mm = 0;  ///< a third of the sides lie beyond this: light as a whole, not what falls on a hand before it
     double sigma_mm = 0;    ///< of a single segment, median
@@ -87,10 +94,11 @@ struct LightCheck {
 /// CHECK: the light of a drawing as both cameras see it, against where it belongs.
 ///
 /// Each stroke (labels are not asked) is predicted into the cameras; across it, in the tangent plane of the skin, the
-/// brightest ridge of the width of a stroke is looked for in the mean of some millimetres of stroke. Stretches near
-/// another stroke are left out: their light could be that one's. Along a line the arms of its ticks tell. What all
-/// parties share cannot be seen: skin that slid over the bone, markers that moved on the head all together, an error
-/// common to CT and scan.
+/// brightest ridge of the width of a stroke is looked for in the mean of some millimetres of stroke. Where the two
+/// cameras see an item's light apart, it lies on skin that is higher or lower than the drawing's, and so farther aside
+/// than either sees it. Stretches near another stroke are left out: their light could be that one's. Along a line the
+/// arms of its ticks tell. What all parties share cannot be seen: skin that slid over the bone, markers that moved on
+/// the head all together, an error common to CT and scan.
 ///
 /// With `only_item`, an index into `PlanDrawing::items`, that one alone is asked, though the light of all others is in
 /// the drawing (dim, say): what lies near their strokes is left out as ever.

@@ -8,6 +8,14 @@
 #include "projection/error_figure.h"
 
 namespace planlight {
+namespace {
+
+std::string sentence_of_height(double depth_mm) {
+    return depth_mm > 0 ? fmt::format("The skin there stands {:.1f} mm higher than at the scan.", depth_mm)
+                        : fmt::format("The skin there lies {:.1f} mm lower than at the scan.", -depth_mm);
+}
+
+}  // namespace
 
 void LightGate::verify(Instant at) {
     verified_ = true;
@@ -54,6 +62,32 @@ std::optional<LightGate::Ruling> LightGate::forbids() const {
     return rule({}, {});
 }
 
+LightGate::Item::Look LightGate::Item::all() const {
+    Look sum;
+    for (const Look& look : looks) {
+        sum.lit += look.lit;
+        sum.asked += look.asked;
+        sum.seen += look.seen;
+    }
+    return sum;
+}
+
+/// A look at which it was not an item's turn tells nothing of it; one that saw little of it, nothing of its place.
+void LightGate::take(Instant at, const ItemLight& seen, Item& item) const {
+    item.name = seen.name;
+    if (seen.lit) item.lit_at = at;
+    std::erase_if(item.looks, [&](const Item::Look& look) { return !within_fresh(look.at, at); });
+    item.looks.push_back({at, seen.lit_segments, seen.segments, seen.seen});
+    if (seen.segments == 0) return;
+    if (seen.seen >= settings_.least_seen_of_item * seen.segments) {
+        item.off_mm = seen.off_mm;
+        item.depth_mm = seen.depth_mm;
+        item.good = item.off_mm <= settings_.warn_mm ? item.good + 1 : 0;
+    } else if (const Item::Look all = item.all(); all.seen < settings_.least_seen_of_item * all.asked) {
+        item.good = 0;
+    }
+}
+
 void LightGate::take(Instant at, const LightCheck& check) {
     last_ = check;
     measured_at_ = at;
@@ -65,14 +99,7 @@ void LightGate::take(Instant at, const LightCheck& check) {
         faint_ = brighter_ > 0 && brighter_ < settings_.least_brighter * (faint_ ? kBack : 1);
     }
     items_.resize(check.items.size());
-    for (std::size_t i = 0; i < items_.size(); ++i) {
-        const ItemLight& item = check.items[i];
-        items_[i].name = item.name;
-        if (item.lit) items_[i].lit_at = at;
-        if (item.segments == 0 || item.seen < settings_.least_seen_of_item * item.segments) continue;
-        items_[i].seen_at = at;
-        items_[i].off_mm = item.off_mm;
-    }
+    for (std::size_t i = 0; i < items_.size(); ++i) take(at, check.items[i], items_[i]);
     const bool measured = check.seen >= settings_.least_seen && check.seen_share() >= settings_.least_seen_share;
     const bool beyond_search = check.far_mm && *check.far_mm > settings_.stop_mm;
     const bool far = beyond_search || (check.seen >= settings_.least_seen && check.most_mm > settings_.stop_mm);
@@ -110,6 +137,31 @@ bool LightGate::faint(Instant at) const {
     return last_ && within_fresh(measured_at_, at) && faint_;
 }
 
+bool LightGate::rule_on_item(const Item& item, Ruling& ruling) const {
+    const Item::Look all = item.all();
+    if (all.asked == 0 || all.seen < settings_.least_seen_of_item * all.asked) {
+        ruling.found_wrong = false;
+        ruling.headline = fmt::format("LOOK: \"{}\" is not measured.", item.name);
+        ruling.details = {"The cameras do not see its light, or not apart from other light: look at it yourself."};
+        return true;
+    }
+    if (item.off_mm > settings_.warn_mm) {
+        ruling.of_other = true;
+        ruling.headline = fmt::format("LOOK: \"{}\" lies {} mm beside its place.", item.name, said(item.off_mm));
+        ruling.details = {"Look at it on the skin; if it stays so, scan again."};
+        if (item.depth_mm) ruling.details.insert(ruling.details.begin(), sentence_of_height(*item.depth_mm));
+        return true;
+    }
+    if (all.asked < settings_.least_asked_of_item * all.lit) {
+        ruling.found_wrong = false;
+        ruling.headline = fmt::format("LOOK: \"{}\" is measured in part only.", item.name);
+        ruling.details = {fmt::format("The cameras can see about {:.0f} % of its light: look at the rest yourself.",
+                                      10 * std::round(10. * all.asked / all.lit))};
+        return true;
+    }
+    return false;
+}
+
 /// The light as measured, from the gravest down; false when nothing is wrong with it.
 bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
     if (!last_ || !within_fresh(measured_at_, at)) {
@@ -142,21 +194,8 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
         ruling.details = {"Wait until the patient lies still; if it stays so, scan again."};
         return true;
     }
-    for (const Item& item : items_) {
-        if (!within_fresh(item.lit_at, at)) continue;
-        if (!within_fresh(item.seen_at, at)) {
-            ruling.found_wrong = false;
-            ruling.headline = fmt::format("LOOK: \"{}\" is not measured.", item.name);
-            ruling.details = {"The cameras do not see its light, or not apart from other light: look at it yourself."};
-            return true;
-        }
-        if (item.off_mm > settings_.warn_mm) {
-            ruling.of_other = true;
-            ruling.headline = fmt::format("LOOK: \"{}\" lies {} mm beside its place.", item.name, said(item.off_mm));
-            ruling.details = {"Look at it on the skin; if it stays so, scan again."};
-            return true;
-        }
-    }
+    for (const Item& item : items_)
+        if (within_fresh(item.lit_at, at) && rule_on_item(item, ruling)) return true;
     ruling.found_wrong = false;
     if (!within_fresh(told_whole_at_, at)) {
         ruling.headline = "LOOK: the light is measured in one direction only.";
@@ -218,7 +257,9 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
             "Press \"Show landmarks\": they are lit one after the other for you to look at."};
         return ruling;
     }
-    if (good_ < settings_.green_after) {
+    const bool items_good = std::ranges::all_of(
+        items_, [&](const Item& item) { return !within_fresh(item.lit_at, at) || item.good >= settings_.green_after; });
+    if (good_ < settings_.green_after || !items_good) {
         ruling.headline = "LOOK: the light is being measured.";
         return ruling;
     }
@@ -226,6 +267,10 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     ruling.headline = "The plan is on the skin.";
     ruling.details = {fmt::format("Measured by the cameras: 95 % of the light within {} mm of the plan.",
                                   said(std::max(0.1, last_->off_mm)))};
+    constexpr double kNearlyAll = 0.9;
+    if (last_->expected < kNearlyAll * last_->lit)
+        ruling.details.push_back(fmt::format("They can see about {:.0f} % of the light.",
+                                             10 * std::round(10. * last_->expected / last_->lit)));
     return ruling;
 }
 

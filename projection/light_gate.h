@@ -11,13 +11,14 @@
 namespace planlight {
 
 struct LightGateSettings {
-    double warn_mm = 1;               ///< 95 % of the light lies within this of the plan, else amber
-    double stop_mm = 2;               ///< and two thirds of it within this, else dark
-    double least_seen_share = 0.5;    ///< of the stretches that the cameras should see
-    double least_seen_of_item = 0.3;  ///< of the stretches of each item
-    int least_seen = 5;               ///< stretches: fewer are no measurement
-    int green_after = 3;              ///< good measurements in a row
-    int dark_after = 2;               ///< bad ones in a row
+    double warn_mm = 1;                ///< 95 % of the light lies within this of the plan, else amber
+    double stop_mm = 2;                ///< and two thirds of it within this, else dark
+    double least_seen_share = 0.5;     ///< of the stretches that the cameras should see
+    double least_seen_of_item = 0.3;   ///< of the stretches of each item, over the looks of the last `fresh`
+    double least_asked_of_item = 0.5;  ///< of the stretches of each item that are lit: else it is measured in part only
+    int least_seen = 5;                ///< stretches: fewer are no measurement
+    int green_after = 3;               ///< good measurements in a row, of all the light and of each item
+    int dark_after = 2;                ///< bad ones in a row
     double least_brighter = 0.3;  ///< the lines than the skin beside them, as a share of it; fainter ones are warned of
     Instant fresh = std::chrono::seconds(1);         ///< an older measurement is none
     Instant verified_for = std::chrono::minutes(5);  ///< of light that was interrupted; then a person looks again
@@ -75,14 +76,24 @@ public:
 private:
     /// An item of the plan, as the checks of the last `fresh` saw it.
     struct Item {
+        struct Look {
+            Instant at{};
+            int lit = 0, asked = 0, seen = 0;  ///< stretches
+        };
         std::string name;
-        Instant lit_at = Instant::min(), seen_at = Instant::min();
-        double off_mm = 0;
+        Instant lit_at = Instant::min();
+        std::vector<Look> looks;
+        int good = 0;       ///< looks in a row that found it in its place
+        double off_mm = 0;  ///< by the last look that saw enough of it
+        std::optional<double> depth_mm;
+        Look all() const;  ///< of all looks together
     };
     void take(Instant at, const LightCheck& check);
     bool faint(Instant at) const;
     Ruling rule(Instant at, const std::vector<LightCause>& causes) const;
     bool rule_on_measurement(Instant at, Ruling& ruling) const;
+    bool rule_on_item(const Item& item, Ruling& ruling) const;
+    void take(Instant at, const ItemLight& seen, Item& item) const;
     void forget();
     std::string said(double off_mm) const;  ///< as every figure of an error here
     bool within_fresh(Instant then, Instant at) const { return then != Instant::min() && at - then <= settings_.fresh; }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "projection/light_depth.h"
+
 namespace planlight {
 namespace {
 
@@ -37,13 +39,9 @@ std::optional<double> depth_mm(const SeenSegment& segment, const RigidTransform&
     constexpr double kLeastParallax = 0.15;
     if (!segment.by_camera_mm[0] || !segment.by_camera_mm[1]) return std::nullopt;
     const RigidTransform ct_from_rig = rig_from_ct.inverse();
-    const auto slope = [&](const CameraModel& camera) {
-        const Vector3d way = ct_from_rig * camera.centre_in_rig() - segment.p_in_ct;
-        return way.dot(segment.sideways_in_ct) / way.dot(segment.normal_in_ct);
-    };
-    const double apart = slope(rig.right_camera) - slope(rig.left_camera);
+    const double apart = sideways_slope(segment, ct_from_rig * rig.right_camera.centre_in_rig()) -
+                         sideways_slope(segment, ct_from_rig * rig.left_camera.centre_in_rig());
     if (std::abs(apart) < kLeastParallax) return std::nullopt;
-    // A point h above the skin is seen at -h * slope along `sideways`.
     return (*segment.by_camera_mm[0] - *segment.by_camera_mm[1]) / apart;
 }
 
@@ -71,7 +69,7 @@ std::vector<LightSample> light_samples(const std::vector<LightFacts>& facts, Ins
             if (!segment.seen) continue;
             LightSample sample;
             sample.at = frame.at;
-            sample.off_mm = segment.off_mm;
+            sample.off_mm = segment.off_mm - segment.by_depth_mm;
             sample.weight = 1 / (std::pow(segment.sigma_mm, 2) + kCommon_mm * kCommon_mm);
             if (told) sample.told_mm = aside_mm(segment, told->rig_from_ct, frame.rig_from_ct, rig.projector);
             sample.by_projector = turned_projector(segment, frame.rig_from_ct, rig.projector);

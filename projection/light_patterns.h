@@ -9,7 +9,7 @@ namespace planlight {
 /// One seen segment of one frame, with what each fault would do to it. mm along its `sideways`.
 struct LightSample {
     Instant at{};                     ///< of its frame
-    double off_mm = 0;                ///< as seen
+    double off_mm = 0;                ///< as seen, on the drawing's skin
     double weight = 1;                ///< 1 / variance
     double told_mm = 0;               ///< as the picture that should have been lit explains it: prediction and hold
     Eigen::Vector3d by_projector;     ///< per radian of the projector turned about its own axes

@@ -27,6 +27,18 @@ std::optional<Vector3d> on_ball_along(const Vector3d& origin, const Vector3d& wa
     return Vector3d(origin + (-b - std::sqrt(root)) * way);
 }
 
+/// Where the sight meets the skin, with what it is higher there.
+std::optional<Vector3d> on_skin_along(const Vector3d& origin, const Vector3d& way, const LitBall& settings) {
+    constexpr double kWhole_mm = 10, kNone_mm = 22;
+    auto p = on_ball_along(origin, way, kBallRadius_mm + settings.plate_mm);
+    for (int round = 0; p && settings.swollen && round < 12; ++round) {
+        const double from_mm = (kBallRadius_mm * p->normalized() - *settings.swollen).norm();
+        const double share = std::clamp((kNone_mm - from_mm) / (kNone_mm - kWhole_mm), 0.0, 1.0);
+        p = on_ball_along(origin, way, kBallRadius_mm + settings.plate_mm + share * settings.swollen_mm);
+    }
+    return p;
+}
+
 /// Spots and lines that come back nowhere, darker than the skin.
 double texture_at(const Vector3d& p) {
     const double spots = std::sin(1.9 * p.x() + 2.3 * std::sin(0.7 * p.z())) * std::sin(2.3 * p.z() + std::sin(p.y()));
@@ -41,7 +53,6 @@ GrayImage picture_of(const CameraModel& camera, const RgbImage& light, const Rig
         for (int x = 0; x < camera.width; ++x) pixels.emplace_back(x, y);
     cv::undistortPoints(pixels, rays, matrix_of(camera), lens_of(camera));
     const RigidTransform rig_from_device = camera.device_from_rig.inverse();
-    const double radius_mm = kBallRadius_mm + settings.plate_mm;
     std::vector<cv::Point3d> lit;
     std::vector<std::size_t> where;
     GrayImage picture(camera.width, camera.height, 8);
@@ -50,11 +61,11 @@ GrayImage picture_of(const CameraModel& camera, const RgbImage& light, const Rig
     std::vector<double> grey(rays.size(), 8);
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const Vector3d way = (rig_from_device.linear() * Vector3d(rays[i].x, rays[i].y, 1)).normalized();
-        const auto p = on_ball_along(rig_from_device.translation(), way, radius_mm);
+        const auto p = on_skin_along(rig_from_device.translation(), way, settings);
         if (!p) continue;
         const bool covered = settings.covered && (*p - *settings.covered).norm() < 5;
         grey[i] = covered ? 20 : 60 - settings.texture_grey * texture_at(*p);
-        if (covered) continue;
+        if (covered || p->x() > settings.shaded_from_mm) continue;
         lit.emplace_back(p->x(), p->y(), p->z());
         where.push_back(i);
     }

@@ -18,6 +18,10 @@ struct LitBall {
     double plate_mm = 0;                     ///< all of the light falls on a larger ball, so much before the skin
     double noise_grey = 1.5;
     double texture_grey = 0;  ///< of dark spots and fine lines on the skin
+    std::optional<Eigen::Vector3d>
+        swollen;  ///< round this point, to 10 mm, the skin is `swollen_mm` higher; to 22 less
+    double swollen_mm = 0;
+    double shaded_from_mm = 1e9;  ///< light falls only where the x of rig is less
     bool lit = true;
 };
 

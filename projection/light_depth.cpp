@@ -1,0 +1,37 @@
+#include "projection/light_depth.h"
+
+#include <cmath>
+
+#include "planning_io/types/statistics.h"
+
+namespace planlight {
+
+double sideways_slope(const SeenSegment& segment, const Eigen::Vector3d& centre_in_ct) {
+    const Eigen::Vector3d way = centre_in_ct - segment.p_in_ct;
+    return way.dot(segment.sideways_in_ct) / way.dot(segment.normal_in_ct);
+}
+
+std::optional<LightDepth> fit_depth(const std::vector<SeenDepth>& seen) {
+    constexpr int kRounds = 5;
+    constexpr double kHuber = 1.5, kWorst_mm = 0.25, kLeastSlopes = 0.15;
+    std::vector<double> each;
+    for (const SeenDepth& s : seen)
+        if (std::abs(s.slopes) > kLeastSlopes) each.push_back(s.apart_mm / s.slopes);
+    if (each.empty()) return std::nullopt;
+    LightDepth depth{median(std::move(each)), 0};
+    for (int round = 0; round < kRounds; ++round) {
+        double information = 0, right = 0;
+        for (const SeenDepth& s : seen) {
+            const double off = std::abs(s.apart_mm - depth.mm * s.slopes) / s.sigma_mm;
+            const double w = (off < kHuber ? 1 : kHuber / off) / (s.sigma_mm * s.sigma_mm);
+            information += w * s.slopes * s.slopes;
+            right += w * s.apart_mm * s.slopes;
+        }
+        if (!(information > 0)) return std::nullopt;
+        depth = {right / information, 1 / std::sqrt(information)};
+    }
+    if (depth.sigma_mm > kWorst_mm) return std::nullopt;
+    return depth;
+}
+
+}  // namespace planlight

@@ -1,0 +1,137 @@
+// Light on skin that is no longer as high as it was scanned, too steep to be measured, or out of the cameras' sight: as
+// cameras see it that share no code with what looks (`lit_ball`).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "projection/check_light.h"
+#include "projection/light_gate.h"
+#include "projection/render_drawing.h"
+#include "tests/projection/lit_ball.h"
+#include "tests/projection/shapes.h"
+
+namespace planlight {
+namespace {
+
+using namespace std::chrono_literals;
+using Eigen::Vector3d;
+
+Borehole hole(const std::string& name, double longitude, double latitude, double diameter_mm = 12) {
+    const Vector3d at = test::on_ball(longitude, latitude);
+    return {name, at, Vector3d(-at.normalized()), diameter_mm, 8, {}};
+}
+
+PlanDrawing drawing_of(const Plan& plan) {
+    DrawingSettings settings;
+    settings.labels = false;
+    return draw_plan(plan, test::ball(), settings);
+}
+
+/// What a verified gate says after the same look ten times.
+LightGate::Ruling ruling_of(const LightCheck& check) {
+    LightGate gate;
+    gate.verify({});
+    LightGate::Ruling ruling;
+    for (int i = 1; i <= 10; ++i) ruling = gate.step(i * 100ms, true, check);
+    return ruling;
+}
+
+/// How far the light that was aimed at `p` lies beside the place on the risen skin over it.
+double aside_mm(const Vector3d& p, double risen_mm, const RigCalibration& rig) {
+    const Vector3d out = p.normalized(), to_light = (rig.projector.centre_in_rig() - p).normalized();
+    const double cosine = out.dot(to_light);
+    return std::abs(risen_mm) * std::sqrt(1 - cosine * cosine) / cosine;
+}
+
+/// One item's skin rises or sinks after the scan, as by an injection under it: each camera sees the light aside, to
+/// opposite sides, or square to the cameras' base not at all.
+TEST(SkinHeight, LightOnSkinThatHasRisenUnderOneItemLiesAsideByItsSlant) {
+    const RigCalibration rig = test::rig_before_ball();
+    Plan plan;
+    plan.boreholes = {hole("Hole 1", 0.1, 0.35), hole("Hole 2", 0.5, 0.3), hole("Hole 3", 0.3, 0.65)};
+    for (const double latitude : {-0.35, -0.55}) {  // the light comes at 43 and at 54 degrees
+        plan.boreholes.resize(3);
+        plan.boreholes.push_back(hole("Swollen", 0.3, latitude));
+        const PlanDrawing drawing = drawing_of(plan);
+        for (const double risen_mm : {-2.5, -1.4, 0.0, 1.4, 2.5, 4.0}) {
+            test::LitBall lit;
+            lit.swollen = plan.boreholes.back().position_in_ct;
+            lit.swollen_mm = risen_mm;
+            const LightCheck check = check_light(drawing, test::ball(), rig, RigidTransform::Identity(),
+                                                 test::pictures_of(drawing, rig, lit));
+            ASSERT_EQ(check.items.size(), 4u);
+            const ItemLight& swollen = check.items[3];
+            const double truth_mm = aside_mm(plan.boreholes.back().position_in_ct, risen_mm, rig);
+            std::printf("risen by %4.1f mm at latitude %.2f: light %.2f mm aside, told %.2f, depth %s (%d of %d)\n",
+                        risen_mm, latitude, truth_mm, swollen.off_mm,
+                        swollen.depth_mm ? std::to_string(*swollen.depth_mm).c_str() : "not told", swollen.seen,
+                        swollen.segments);
+            EXPECT_NEAR(swollen.off_mm, truth_mm, 0.3 + 0.15 * truth_mm);
+            for (int k = 0; k < 3; ++k) EXPECT_LT(check.items[static_cast<std::size_t>(k)].off_mm, 0.2);
+            const LightGate::Ruling ruling = ruling_of(check);
+            EXPECT_EQ(ruling.trust == LightTrust::aligned, truth_mm < 1) << ruling.headline;
+            if (risen_mm == 0) {
+                EXPECT_FALSE(swollen.depth_mm);
+            } else {
+                ASSERT_TRUE(swollen.depth_mm);
+                EXPECT_NEAR(*swollen.depth_mm, risen_mm, 0.3 + 0.15 * std::abs(risen_mm));
+                if (truth_mm > 1.2) EXPECT_NE(ruling.headline.find("Swollen"), std::string::npos) << ruling.headline;
+            }
+        }
+    }
+}
+
+/// What the projector lights, the gate knows of, though it is too steep to be measured.
+TEST(SkinHeight, AnItemThatIsLitButTooSteepToBeMeasuredIsNoGreen) {
+    EXPECT_EQ(RenderSettings{}.steepest, CheckLightSettings{}.steepest_lit);
+    const RigCalibration rig = test::rig_before_ball();
+    Plan plan;
+    // The light falls at 1.24 radians there, 11 of 12 mm of it at 1.2 and more.
+    plan.boreholes = {hole("Hole 1", 0.1, 0.35), hole("Hole 2", 0.5, 0.3), hole("Hole 3", 0.3, 0.65),
+                      hole("Steep", 0.3, 0.4 - 1.13, 4)};
+    const PlanDrawing drawing = drawing_of(plan);
+    RgbImage picture;
+    const RenderCounts counts =
+        DrawingRenderer(test::ball(), rig.projector).render_into(picture, drawing, RigidTransform::Identity());
+    ASSERT_GT(counts.items[3].lit_share(), 0.95);
+    const LightCheck check =
+        check_light(drawing, test::ball(), rig, RigidTransform::Identity(), test::pictures_of(drawing, rig, {}));
+    EXPECT_TRUE(check.items[3].lit);
+    EXPECT_EQ(check.items[3].segments, 0) << "steeper than what is measured";
+    const LightGate::Ruling ruling = ruling_of(check);
+    EXPECT_EQ(ruling.headline, "LOOK: \"Steep\" is not measured.");
+}
+
+/// The cameras see a third of the line; on the rest there is no light at all.
+TEST(SkinHeight, ALineOfWhichTheCamerasSeeAThirdIsMeasuredInPartOnly) {
+    RigCalibration rig = test::rig_before_ball();
+    Plan plan;
+    plan.boreholes = {hole("Hole 1", 0.25, 0.7), hole("Hole 2", 0.25, 0.05)};
+    OsteotomyLine line;
+    line.name = "Line";
+    for (double longitude = 0.3; longitude < 1.0; longitude += 0.1)
+        line.points_in_ct.push_back(test::on_ball(longitude, 0.4));
+    plan.osteotomy_lines.push_back(line);
+    const PlanDrawing drawing = drawing_of(plan);
+    // Both pictures end to the right of the target's column.
+    const Vector3d seen_to = test::on_ball(0.3 + 0.2, 0.4);
+    for (CameraModel* camera : {&rig.left_camera, &rig.right_camera})
+        camera->width = static_cast<int>(project(*camera, seen_to)->x());
+    test::LitBall lit;
+    const auto check_of = [&] {
+        return check_light(drawing, test::ball(), rig, RigidTransform::Identity(),
+                           test::pictures_of(drawing, rig, lit));
+    };
+    const LightCheck check = check_of();
+    const auto cut = std::ranges::find(check.items, "Line", &ItemLight::name);
+    ASSERT_NE(cut, check.items.end());
+    EXPECT_GT(cut->lit_segments, 2 * cut->segments);
+    EXPECT_EQ(cut->seen, cut->segments);
+    EXPECT_LT(check.expected, check.lit);
+    const LightGate::Ruling ruling = ruling_of(check);
+    EXPECT_EQ(ruling.headline, "LOOK: \"Line\" is measured in part only.");
+}
+
+}  // namespace
+}  // namespace planlight
