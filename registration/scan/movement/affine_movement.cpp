@@ -246,8 +246,11 @@ Laid Surface::lay(const Moment& later) const {
     std::vector<float> differences;
     std::vector<int> patch;
     Normal A = Normal::Zero();
-    for (const Pixel& p : pixels_) {
+    if (later.lit_only) laid.seen.assign(pixels_.size(), false);
+    for (std::size_t k = 0; k < pixels_.size(); ++k) {
+        const Pixel& p = pixels_[k];
         if (later.lit_only && !is_lit(p, later)) continue;
+        if (later.lit_only) laid.seen[k] = true;
         rows.push_back(by_numbers(p));
         differences.push_back(p.first - pictures_.even_at(later, p.x, p.y));
         patch.push_back(p.patch);
@@ -299,21 +302,26 @@ Laid Surface::lay(const Moment& later) const {
     return laid;
 }
 
-Surface::Way Surface::between(const Laid& a, const Laid& b) const {
+std::optional<Surface::Way> Surface::between(const Laid& a, const Laid& b) const {
     const Affine d = a.map - b.map;
     const Eigen::Matrix<double, kAffine, kAffine> covariance = a.covariance + b.covariance;
+    const auto looked_at = [](const Laid& laid, std::size_t k) { return laid.seen.empty() || laid.seen[k]; };
     std::vector<double> ways;
     double variance = 0;
-    for (std::size_t k = 0; k < pixels_.size(); k += 1 + pixels_.size() / 500) {
+    std::size_t all = 0;
+    for (std::size_t k = 0; k < pixels_.size(); k += 1 + pixels_.size() / 1000) {
+        ++all;
+        if (!looked_at(a, k) || !looked_at(b, k)) continue;
         const double u = (pixels_[k].x - centre_.x()) / scale_, v = (pixels_[k].y - centre_.y()) / scale_;
         Eigen::Matrix<double, 2, kAffine> P;
         P << 1, u, v, 0, 0, 0, 0, 0, 0, 1, u, v;
         ways.push_back((P * d).norm());
         variance += (P * covariance * P.transpose()).trace();
     }
+    if (10 * ways.size() < all) return std::nullopt;
     const auto at = ways.begin() + static_cast<std::ptrdiff_t>(ways.size() * 95 / 100);
     std::nth_element(ways.begin(), at, ways.end());
-    return {*at, std::sqrt(variance / static_cast<double>(ways.size()))};
+    return Way{*at, std::sqrt(variance / static_cast<double>(ways.size()))};
 }
 
 }  // namespace planlight::affine_movement

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "planning_io/types/image.h"
@@ -46,6 +47,8 @@ struct Laid {
     double light_change = 0;
     /// The same of that one of the moment's frames which differs most from their mean, without a sign.
     double uneven_light = 0;
+    /// By pixel of the surface, whether it was looked at; empty: all. What a map says beyond is guessed.
+    std::vector<bool> seen;
     bool determined = false;
 };
 
@@ -67,11 +70,12 @@ public:
     /// not better.
     Laid lay(const Moment& later) const;
 
-    /// How far 95 % of the surface lies apart under two maps, and the standard deviation of that; pixels.
+    /// How far 95 % of the surface that both looked at lies apart under two maps, and the standard deviation of that;
+    /// pixels. Empty where that is under a tenth of it.
     struct Way {
         double px = 0, sigma_px = 0;
     };
-    Way between(const Laid& a, const Laid& b) const;
+    std::optional<Way> between(const Laid& a, const Laid& b) const;
 
 private:
     static constexpr std::size_t kLeastPixels = 2000, kMostPixels = 150000;

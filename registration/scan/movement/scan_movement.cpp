@@ -57,7 +57,9 @@ void find_greatest(const std::vector<NamedMoment>& moments, const std::vector<La
     for (std::size_t i = 0; i < laid.size(); ++i)
         for (std::size_t j = i + 1; j < laid.size(); ++j) {
             if (!laid[i].determined || !laid[j].determined) continue;
-            const auto [way_px, sigma_px] = surface.between(laid[i], laid[j]);
+            const auto way = surface.between(laid[i], laid[j]);
+            if (!way) continue;
+            const auto [way_px, sigma_px] = *way;
             sigmas_mm.push_back(mm_per_px * sigma_px);
             const double moved_mm = mm_per_px * std::sqrt(std::max(0.0, way_px * way_px - 4 * sigma_px * sigma_px));
             if (moved_mm <= movement.moved_mm) continue;

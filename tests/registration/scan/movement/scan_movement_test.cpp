@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
 
 #include "registration/scan/check/camera_gamma.h"
+#include "registration/scan/movement/affine_movement.h"
 #include "registration/scan/movement/uniform_light_frames.h"
 #include "tests/registration/gray_columns.h"
 
@@ -247,6 +249,34 @@ TEST(ScanMovement, OfACodeWithoutInversesIsMeasuredWhereItsBitsAreLit) {
         capture_of([](double share) -> Eigen::Vector2d { return share * Eigen::Vector2d(0.8, -0.6); })));
     EXPECT_GT(moved.moved_mm, 0.2) << "of 0.42 mm; the last bits are too fine to be looked at";
     EXPECT_LT(moved.moved_mm, 0.45);
+}
+
+// A coarse bit lights a half of the skin; what its map says of the other half is guessed. Dim skin at rest had moved by
+// 0.4 mm by two such bits.
+TEST(ScanMovement, TwoBitsAreComparedWhereBothAreLit) {
+    using namespace affine_movement;
+    std::vector<GrayImage> frames(4, GrayImage(kWidth, kHeight));  // white, black, lit above, lit below
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const auto white = static_cast<std::uint8_t>(skin(x, y)), black = std::uint8_t{10};
+            const bool above = y < kHeight / 2;
+            const std::array grey{white, black, above ? white : black, above ? black : white};
+            for (std::size_t k = 0; k < 4; ++k) frames[k].at(x, y) = grey[k];
+        }
+    Pictures pictures{frames, 0, 1, {}};
+    for (std::size_t g = 0; g < pictures.light.size(); ++g) pictures.light[g] = static_cast<float>(g);
+    const Moment white{{0}, true, 4}, lit_above{{2}, true, 4}, lit_below{{3}, true, 4};
+    const Surface surface(pictures, white, {white, lit_above, lit_below});
+    const Laid all = surface.lay(white), below = surface.lay(lit_below);
+    Laid above = surface.lay(lit_above);
+    ASSERT_TRUE(all.determined && above.determined && below.determined);
+    EXPECT_FALSE(surface.between(above, below)) << "no skin that both saw";
+    // Moves by (1 + v) pixels: v runs from below 0 at the top, to above 0 at the bottom.
+    above.map = all.map + Affine{{1, 0, 1, 0, 0, 0}};
+    ASSERT_TRUE(surface.between(all, above));
+    EXPECT_LT(surface.between(all, above)->px, 1);
+    above.seen.clear();
+    EXPECT_GT(surface.between(all, above)->px, 1.5);
 }
 
 /// A wall without a spot, brighter than the camera can show in its middle, with a glint: `at` pixels of the camera's
