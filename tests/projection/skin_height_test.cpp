@@ -76,7 +76,9 @@ TEST(SkinHeight, LightOnSkinThatHasRisenUnderOneItemLiesAsideByItsSlant) {
             } else {
                 ASSERT_TRUE(swollen.depth_mm);
                 EXPECT_NEAR(*swollen.depth_mm, risen_mm, 0.3 + 0.15 * std::abs(risen_mm));
-                if (truth_mm > 1.2) EXPECT_NE(ruling.headline.find("Swollen"), std::string::npos) << ruling.headline;
+                if (truth_mm > 1.2) {
+                    EXPECT_NE(ruling.headline.find("Swollen"), std::string::npos) << ruling.headline;
+                }
             }
         }
     }

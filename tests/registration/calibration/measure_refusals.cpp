@@ -15,9 +15,9 @@ namespace {
 
 using Poses = std::vector<PoseObservation>;
 
-/// From the middle pose on a device stands turned.
-Poses knocked_half_way(const test::IdealRoom& room, unsigned seed, CameraModel RigCalibration::*device,
-                       double degrees) {
+/// In the last `poses_after` poses a device stands turned.
+Poses knocked_before(const test::IdealRoom& room, unsigned seed, CameraModel RigCalibration::*device, double degrees,
+                     std::size_t poses_after) {
     test::IdealRoom after = room;
     const double way = seed;
     const Eigen::Vector3d axis(std::cos(way), std::sin(way), 0);
@@ -25,7 +25,7 @@ Poses knocked_half_way(const test::IdealRoom& room, unsigned seed, CameraModel R
         Eigen::AngleAxisd(degrees * M_PI / 180, axis) * (room.rig.*device).device_from_rig;
     Poses poses = room.observe(seed);
     const Poses later = after.observe(seed);
-    for (std::size_t i = poses.size() / 2; i < poses.size(); ++i) poses[i] = later[i];
+    for (std::size_t i = poses.size() - poses_after; i < poses.size(); ++i) poses[i] = later[i];
     return poses;
 }
 
@@ -41,8 +41,8 @@ int main(int argc, char** argv) {
     using namespace planlight;
     const unsigned seeds = argc > 1 ? static_cast<unsigned>(std::stoi(argv[1])) : 10;
     const test::IdealRoom room = test::ideal_room();
-    const auto knocked = [&](CameraModel RigCalibration::*device, double degrees) {
-        return [&room, device, degrees](unsigned seed) { return knocked_half_way(room, seed, device, degrees); };
+    const auto knocked = [&](CameraModel RigCalibration::*device, double degrees, std::size_t poses_after = 4) {
+        return [=, &room](unsigned seed) { return knocked_before(room, seed, device, degrees, poses_after); };
     };
     const std::vector<std::pair<std::string, std::function<Poses(unsigned)>>> kinds{
         {"nothing wrong", [&](unsigned seed) { return room.observe(seed); }},
@@ -52,6 +52,13 @@ int main(int argc, char** argv) {
         {"projector turned by 0.005 degrees half way", knocked(&RigCalibration::projector, 0.005)},
         {"projector turned by 0.01 degrees half way", knocked(&RigCalibration::projector, 0.01)},
         {"projector turned by 0.1 degrees half way", knocked(&RigCalibration::projector, 0.1)},
+        {"right camera turned by 0.02 degrees before the last", knocked(&RigCalibration::right_camera, 0.02, 1)},
+        {"right camera turned by 0.1 degrees before the last", knocked(&RigCalibration::right_camera, 0.1, 1)},
+        {"right camera turned by 1 degree before the last", knocked(&RigCalibration::right_camera, 1, 1)},
+        {"projector turned by 0.01 degrees before the last", knocked(&RigCalibration::projector, 0.01, 1)},
+        {"projector turned by 0.02 degrees before the last", knocked(&RigCalibration::projector, 0.02, 1)},
+        {"projector turned by 0.1 degrees before the last", knocked(&RigCalibration::projector, 0.1, 1)},
+        {"projector turned by 1 degree before the last", knocked(&RigCalibration::projector, 1, 1)},
         {"left and right swapped",
          [&](unsigned seed) {
              return for_each_view(room.observe(seed), [](PoseObservation& p) { std::swap(p.left, p.right); });
@@ -81,7 +88,7 @@ int main(int argc, char** argv) {
             ++refused;
             example = calibration.refusal->reason;
         }
-        fmt::print("{:<48} refused {} of {}{}\n", name, refused, seeds, example.empty() ? "" : ": " + example);
+        fmt::print("{:<54} refused {} of {}{}\n", name, refused, seeds, example.empty() ? "" : ": " + example);
         std::fflush(stdout);
     }
     return 0;
