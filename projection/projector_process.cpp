@@ -135,18 +135,18 @@ void ProjectorProcess::check() {
 void ProjectorProcess::check_locked() {
     constexpr const char* kRemedy =
         "The light is dark. It can be started again; if this comes back, restart the computer.";
-    if (process_ < 0) throw DeviceError("projector process", "it has ended", kRemedy);
+    if (process_ < 0) throw DeviceError("Projector process", "it has ended", kRemedy);
     if (mailbox_.state() == LightMailbox::State::failed) fail(mailbox_.problem(), mailbox_.remedy());
     if (waitpid(process_, nullptr, WNOHANG) == process_) {
         process_ = -1;
         end();
-        throw DeviceError("projector process", "it was ended from outside, or crashed", kRemedy);
+        throw DeviceError("Projector process", "it was ended from outside, or crashed", kRemedy);
     }
     const Instant busy_since = mailbox_.busy_since();
     if (clock_.now() - mailbox_.alive_at() > settings_.silence_allowed ||
         (busy_since.count() > 0 && clock_.now() - busy_since > settings_.work_allowed)) {
         end();
-        throw DeviceError("projector process", "it does not answer any more", kRemedy);
+        throw DeviceError("Projector process", "it does not answer any more", kRemedy);
     }
 }
 

@@ -44,7 +44,7 @@ TEST(ProjectorProcess, ThatDoesNotAnswerIsADeviceThatIsLost) {
         projector.check();  // the stand-in has never said that it is alive
         FAIL() << "it is taken for alive";
     } catch (const DeviceError& error) {
-        EXPECT_STREQ(error.what(), "projector process: it does not answer any more");
+        EXPECT_STREQ(error.what(), "Projector process: it does not answer any more");
         EXPECT_FALSE(error.remedy.empty());
     }
 }

@@ -302,7 +302,7 @@ TEST_P(ShippedWords, SayWholeSentencesAsASessionPutsThemTogether) {
           "Dark: Left camera (serial 4711): no frame came in 250 ms.",
           "Left camera: its pictures come 40 ms late.",
           "No projector: monitor HDMI-2 is no longer connected.",
-          "No projector: projector process: it was ended from outside, or crashed.",
+          "No projector: Projector process: it was ended from outside, or crashed.",
           "LOOK: the light comes late.",
           "Osteotomy: about 25 % of it has no light (behind other skin); it goes on where the light ends.",
           "Turn the patient or the projector to light the rest.",
