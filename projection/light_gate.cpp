@@ -189,6 +189,18 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
                         last_->seen, last_->expected)};
         return true;
     }
+    const Item* aside = nullptr;
+    bool another_right = false;
+    for (const Item& item : items_) {
+        const Item::Look all = item.all();
+        if (!within_fresh(item.lit_at, at) || all.seen == 0 || all.seen < settings_.least_seen_of_item * all.asked)
+            continue;
+        if (item.off_mm <= settings_.warn_mm)
+            another_right = true;
+        else if (!aside || item.off_mm > aside->off_mm)
+            aside = &item;
+    }
+    if (aside && another_right) return rule_on_item(*aside, ruling);
     if (last_->off_mm > settings_.warn_mm) {
         ruling.headline = fmt::format("LOOK: the light lies up to {} mm beside the plan.", said(last_->off_mm));
         ruling.details = {"Wait until the patient lies still; if it stays so, scan again."};

@@ -89,7 +89,7 @@ TEST(SkinHeight, AnItemThatIsLitButTooSteepToBeMeasuredIsNoGreen) {
     EXPECT_EQ(RenderSettings{}.steepest, CheckLightSettings{}.steepest_lit);
     const RigCalibration rig = test::rig_before_ball();
     Plan plan;
-    // The light falls at 1.24 radians there, 11 of 12 mm of it at 1.2 and more.
+    // The light falls at 1.24 radians there.
     plan.boreholes = {hole("Hole 1", 0.1, 0.35), hole("Hole 2", 0.5, 0.3), hole("Hole 3", 0.3, 0.65),
                       hole("Steep", 0.3, 0.4 - 1.13, 4)};
     const PlanDrawing drawing = drawing_of(plan);
@@ -100,9 +100,10 @@ TEST(SkinHeight, AnItemThatIsLitButTooSteepToBeMeasuredIsNoGreen) {
     const LightCheck check =
         check_light(drawing, test::ball(), rig, RigidTransform::Identity(), test::pictures_of(drawing, rig, {}));
     EXPECT_TRUE(check.items[3].lit);
-    EXPECT_EQ(check.items[3].segments, 0) << "steeper than what is measured";
+    EXPECT_LT(2 * check.items[3].segments, check.items[3].lit_segments) << "steeper than what is measured";
     const LightGate::Ruling ruling = ruling_of(check);
-    EXPECT_EQ(ruling.headline, "LOOK: \"Steep\" is not measured.");
+    EXPECT_EQ(ruling.trust, LightTrust::look);
+    EXPECT_NE(ruling.headline.find("Steep"), std::string::npos) << ruling.headline;
 }
 
 /// The cameras see a third of the line; on the rest there is no light at all.
