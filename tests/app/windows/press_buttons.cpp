@@ -1,6 +1,6 @@
 // Run by press_buttons.sh: shows the operator window with a fake model, writes where its controls are into
 // FOLDER/actions and FOLDER/views (FOLDER/landmarks once these are clicked, FOLDER/question once it is asked whether to
-// close it), and prints every action, answer and landmark, until the window is closed or two minutes have passed. A
+// close it), and prints every action, answer and landmark, until the window is closed or three minutes have passed. A
 // file FOLDER/close makes the window system ask the window to close, as Alt+F4 does. Argument: FOLDER.
 #include <fmt/format.h>
 
@@ -111,7 +111,7 @@ int main(int, char** argv) {
     std::string answer;
     std::size_t clicked = 0;
     double last_azimuth = window.view().azimuth;
-    while (steady_clock::now() - start < std::chrono::seconds(120)) {
+    while (steady_clock::now() - start < std::chrono::seconds(180)) {
         const std::size_t drawn_before = window.frames_drawn();
         const OperatorAction action = window.frame(model);
         if (action == OperatorAction::dark && window.frames_drawn() != drawn_before) {

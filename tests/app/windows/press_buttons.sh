@@ -2,7 +2,7 @@
 # press_buttons.sh PROGRAM FOLDER: presses every control of the operator window with a real mouse and keyboard (xdotool)
 # on a virtual screen and compares what the window said. Exit code 77: the tools are not installed.
 . "$(dirname "$0")/pressing.sh"
-open_window 150 views "Planlight buttons"
+open_window 200 views "Planlight buttons"
 
 place() { cat "$folder"/{actions,views,view-buttons,landmarks,page,question,whole} 2>/dev/null | awk -v n="$1" '$1 == n { print $2, $3 }'; }
 
