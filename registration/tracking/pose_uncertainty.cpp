@@ -89,7 +89,8 @@ Vector2d pixel_error(const CameraModel& right, const CameraModel& wrong, const V
     return a && b ? Vector2d(*b - *a) : Vector2d::Zero();
 }
 
-/// A reference marker as both cameras measured it: how its place follows from its pixels.
+/// A reference marker as both cameras measured it: how its place follows from its pixels. Zero where it does not lie in
+/// both pictures: then it was not measured in this rig, and nothing of the cameras' errors cancels.
 struct Reference {
     Vector3d p_in_rig = Vector3d::Zero();
     std::array<Matrix23, 2> pixel_by_point{Matrix23::Zero(), Matrix23::Zero()};  ///< left, right
@@ -103,7 +104,9 @@ Reference reference_of(const RigCalibration& rig, const PatientMarker& marker) {
     Matrix3d N = Matrix3d::Zero();
     for (const bool left : {true, false}) {
         Matrix23& J = reference.pixel_by_point[left ? 0 : 1];
-        if (!project(left ? rig.left_camera : rig.right_camera, reference.p_in_rig, J)) J.setZero();
+        const CameraModel& camera = left ? rig.left_camera : rig.right_camera;
+        const auto pixel = project(camera, reference.p_in_rig, J);
+        if (!pixel || !in_picture(camera, *pixel)) J.setZero();
         N += J.transpose() * J;
     }
     const Eigen::LDLT<Matrix3d> solver(N);
