@@ -234,9 +234,11 @@ std::vector<std::string> faults(const CutPlane& c, const SkinSurface& skin, cons
     }
     const std::vector<SkinLine> lines = trace(skin, c, s.max_segment_mm);
     const double end_mm = trace_at_end_mm(skin, c);
-    if (lines.empty())
-        f.add("it does not meet the skin within its extent of {:.0f} x {:.0f} mm{}", c.width_mm, c.height_mm,
-              end_mm >= 1 ? ", only the end of the volume" : "");
+    if (lines.empty() && end_mm >= 1)
+        f.add("within its extent of {:.0f} x {:.0f} mm it meets only the end of the volume, no skin", c.width_mm,
+              c.height_mm);
+    else if (lines.empty())
+        f.add("it does not meet the skin within its extent of {:.0f} x {:.0f} mm", c.width_mm, c.height_mm);
     else if (end_mm >= 1)
         f.add("its cut reaches the end of the volume, where the scan ends: it is drawn and measured up to there");
     double lids_mm = 0;

@@ -60,9 +60,9 @@ public:
     void verify(Instant at);
     bool verified() const { return verified_; }
 
-    /// A short scan found the plan's skin so far off where the markers put it, mm (infinite: elsewhere, nobody can say by
-    /// how much): beyond `stop_mm` the light stops,
-    /// beyond `warn_mm` it is not trusted until the next check or match.
+    /// A short scan found the plan's skin so far off where the markers put it, mm (infinite: elsewhere, nobody can say
+    /// by how much): beyond `stop_mm` the light stops, beyond `warn_mm` it is not trusted until the next check or
+    /// match.
     void skin_checked(double off_mm);
     void new_match();  ///< or one that was found to hold still: nothing is verified or measured any more
     /// Light is asked for again; after a stop it must be verified anew, for what a person saw then was no longer true.

@@ -229,9 +229,10 @@ Run add_session(CLI::App& app) {
                     "The network card that it listens on, as a number (0.0.0.0: all of them)")
         ->capture_default_str()
         ->needs(igtl);
-    sub->add_flag("--autoplay", o.autoplay,
-                  "Scan, register and track by itself until DARK or Stop is pressed; that the light is right is said in the "
-                  "simulated room only");
+    sub->add_flag(
+        "--autoplay", o.autoplay,
+        "Scan, register and track by itself until DARK or Stop is pressed; that the light is right is said in the "
+        "simulated room only");
     sub->add_option("--idle-first-s", o.idle_first_s,
                     "With --autoplay: wait so long before the first press; --json then says what the window cost");
     sub->add_option("--end-after-s", o.end_after_s, "Close after this many seconds of tracking");

@@ -175,9 +175,10 @@ std::optional<Refusal> judge_odd_poses(const std::vector<PoseObservation>& poses
         const bool light = device == DeviceName::projector;
         const char* them = odd.size() == 1 ? "that pose" : "those poses";
         return Refusal{
-            fmt::format("the {}'s {} of {} contradict{} the other poses': {} was moved {}, or the pictures of {} are bad",
-                        text_of(device), light ? "light" : "corners", fmt::join(names, ", "), light ? "s" : "",
-                        light ? "the projector, or a camera," : "a camera", when_moved(odd, poses, bundle.rig), them),
+            fmt::format(
+                "the {}'s {} of {} contradict{} the other poses': {} was moved {}, or the pictures of {} are bad",
+                text_of(device), light ? "light" : "corners", fmt::join(names, ", "), light ? "s" : "",
+                light ? "the projector, or a camera," : "a camera", when_moved(odd, poses, bundle.rig), them),
             fmt::format("If every device stands now as it stood in the other poses, take {} out of the folder and "
                         "calibrate again; else fix all devices to the rig and capture all poses again.",
                         fmt::join(names, ", "))};
