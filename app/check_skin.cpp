@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/compare_skin.h"
 #include "app/session.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
@@ -44,12 +45,12 @@ SkinCheck Session::measure_skin(const std::function<void(int, int)>& progress) {
 
 /// As the match itself was refined, so that what both get wrong alike cancels. A pose that is far off is no start for
 /// that: what is found then is some place near by, with a wide bound, and the skin lies off all over.
-void Session::compare_skin(const PointCloud& cloud, const RegistrationResult& match, const RigidTransform& rig_from_ct,
-                           SkinCheck& check) const {
+void compare_skin(const PointCloud& cloud, const Case& the_case, const RegistrationResult& match,
+                  const RigidTransform& rig_from_ct, double max_more_residual_mm, SkinCheck& check) {
     constexpr std::size_t kLeast = 1000, kLeastAmongCloth = 500;
     const double stop_mm = LightGateSettings{}.stop_mm;
     const bool among_cloth = match.skin_fraction.has_value();
-    const SkinAgain again = skin_again(cloud, case_.lut, rig_from_ct.inverse(),
+    const SkinAgain again = skin_again(cloud, the_case.lut, rig_from_ct.inverse(),
                                        among_cloth ? match.skin : SkinDisplacement{}, match.skin_offset_mm.value_or(0));
     const PointCloud& skin = among_cloth ? again.cloud : cloud;
     check.points = skin.size();
@@ -57,22 +58,27 @@ void Session::compare_skin(const PointCloud& cloud, const RegistrationResult& ma
     check.residual_mm = again.median_mm;
     check.why_not = "too little skin was seen";
     if (check.points < (among_cloth ? kLeastAmongCloth : kLeast)) return;
-    const DeformablePose found = refine_pose_deformable(skin, case_.lut, rig_from_ct.inverse());
+    const DeformablePose found = refine_pose_deformable(skin, the_case.lut, rig_from_ct.inverse());
     const RigidTransform seen = found.ct_from_rig.inverse();
-    for (const Eigen::Vector3d& p : points_of(case_.plan)) {
+    for (const Eigen::Vector3d& p : points_of(the_case.plan)) {
         const double off_mm = (seen * p - rig_from_ct * p).norm();
         if (off_mm < check.off_mm) continue;
         check.off_mm = off_mm;
         check.bound_mm = predicted_error(found.covariance, p).bound_95_mm;
     }
     const bool far = match.skin.known() && check.on_skin >= kLeastAmongCloth &&
-                     check.residual_mm > match.residual_median_mm + settings_.resume.max_more_residual_mm;
+                     check.residual_mm > match.residual_median_mm + max_more_residual_mm;
     const bool tells = check.bound_mm <= stop_mm || check.bound_mm < check.off_mm;
     check.elsewhere = check.off_mm > stop_mm ? !tells : far;
     check.known = tells && !check.elsewhere;
     if (check.known) check.why_not.clear();
     if (check.elsewhere) check.why_not = "the skin does not lie where the markers put it";
     if (!check.known) check.off_mm = 0;
+}
+
+void Session::compare_skin(const PointCloud& cloud, const RegistrationResult& found, const RigidTransform& rig_from_ct,
+                           SkinCheck& check) const {
+    planlight::compare_skin(cloud, case_, found, rig_from_ct, settings_.resume.max_more_residual_mm, check);
 }
 
 }  // namespace planlight

@@ -93,20 +93,17 @@ std::vector<Eigen::Vector3d> vectors(const Ply& ply, std::array<const char*, 3> 
     return result;
 }
 
-/// Of unit length; zero where there is none. Empty where most points have none.
+/// Of unit length; zero where there is none.
 std::vector<Eigen::Vector3d> normals_of(const Ply& ply, const fs::path& file) {
     constexpr double kUnit = 1e-4;  // off it by less: as it was written, to the last digit
     const auto &x = any_column(ply, "nx", file), &y = any_column(ply, "ny", file), &z = any_column(ply, "nz", file);
     std::vector<Eigen::Vector3d> normals(ply.vertices, Eigen::Vector3d::Zero());
-    std::size_t there = 0;
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const Eigen::Vector3d n(x[i], y[i], z[i]);
         const double length = n.stableNorm();
-        const bool known = std::isfinite(length) && length > 0;
-        if (known) normals[i] = std::abs(length - 1) < kUnit ? n : Eigen::Vector3d(n / length);
-        there += known ? 1 : 0;
+        if (std::isfinite(length) && length > 0)
+            normals[i] = std::abs(length - 1) < kUnit ? n : Eigen::Vector3d(n / length);
     }
-    if (2 * there < normals.size()) normals.clear();
     return normals;
 }
 
@@ -120,9 +117,15 @@ void keep(const std::vector<char>& kept, Column& values) {
     values.resize(to);
 }
 
-void leave_out_unmeasured(PointCloud& cloud, PointsLeftOut& left_out) {
+void keep(const std::vector<char>& kept, PointCloud& cloud) {
+    keep(kept, cloud.sigma_mm);
+    keep(kept, cloud.pixels_in_projector);
+    keep(kept, cloud.normals_in_rig);
+    keep(kept, cloud.points_in_rig);
+}
+
+void leave_out_at_origin_and_repeated(PointCloud& cloud, PointsLeftOut& left_out) {
     const auto& points = cloud.points_in_rig;
-    const bool has_normals = cloud.normals_in_rig.size() == cloud.size();
     std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -132,19 +135,21 @@ void leave_out_unmeasured(PointCloud& cloud, PointsLeftOut& left_out) {
     std::vector<char> kept(points.size(), 1);
     for (std::size_t k = 0; k < order.size(); ++k) {
         const std::size_t i = order[k];
-        std::size_t* const why = points[i].isZero(0)                                ? &left_out.at_origin
-                                 : k > 0 && points[i] == points[order[k - 1]]       ? &left_out.repeated
-                                 : has_normals && cloud.normals_in_rig[i].isZero(0) ? &left_out.without_normal
-                                                                                    : nullptr;
-        if (!why) continue;
-        ++*why;
-        kept[i] = 0;
+        const bool at_origin = points[i].isZero(0), repeated = k > 0 && points[i] == points[order[k - 1]];
+        kept[i] = !at_origin && !repeated;
+        if (!kept[i]) ++(at_origin ? left_out.at_origin : left_out.repeated);
     }
-    if (left_out.all() == 0) return;
-    keep(kept, cloud.sigma_mm);
-    keep(kept, cloud.pixels_in_projector);
-    keep(kept, cloud.normals_in_rig);
-    keep(kept, cloud.points_in_rig);
+    keep(kept, cloud);
+}
+
+/// A column of normals that most points lack is none.
+void leave_out_without_normal(PointCloud& cloud, PointsLeftOut& left_out) {
+    std::vector<char> kept;
+    for (const auto& n : cloud.normals_in_rig) kept.push_back(!n.isZero(0));
+    const auto without = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), 0));
+    if (2 * without > kept.size()) return cloud.normals_in_rig.clear();
+    left_out.without_normal = without;
+    if (without > 0) keep(kept, cloud);
 }
 
 }  // namespace
@@ -243,7 +248,9 @@ PointCloud read_cloud(const fs::path& file, const CloudOrigin& origin, std::vect
         for (std::size_t i = 0; i < x.size(); ++i) cloud.pixels_in_projector.emplace_back(x[i], y[i]);
     }
     PointsLeftOut none;
-    leave_out_unmeasured(cloud, left_out ? *left_out : none);
+    PointsLeftOut& counts = left_out ? *left_out : none;
+    leave_out_at_origin_and_repeated(cloud, counts);
+    leave_out_without_normal(cloud, counts);
     return cloud;
 }
 

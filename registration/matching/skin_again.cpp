@@ -13,16 +13,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Cells of twice the places' distance in which, or beside which, there is a place.
-class Around {
+/// The cells of the match's places, as `measure_displacement` gathered them: not those beside them, where cloth may lie
+/// that takes more points than the skin.
+class Places {
 public:
-    explicit Around(const SkinDisplacement& found) : everywhere_(!found.known()), cell_mm_(2 * found.apart_mm) {
-        for (const auto& place : found.places) {
-            const std::array<int, 3> at = cell_of(place.p_in_ct);
-            for (int i = -1; i <= 1; ++i)
-                for (int j = -1; j <= 1; ++j)
-                    for (int k = -1; k <= 1; ++k) cells_.insert(std::array<int, 3>{at[0] + i, at[1] + j, at[2] + k});
-        }
+    explicit Places(const SkinDisplacement& found) : everywhere_(!found.known()), cell_mm_(found.apart_mm) {
+        for (const auto& place : found.places) cells_.insert(cell_of(place.p_in_ct));
     }
     bool holds(const Vector3d& p_in_ct) const { return everywhere_ || cells_.contains(cell_of(p_in_ct)); }
 
@@ -42,7 +38,7 @@ SkinAgain skin_again(const PointCloud& cloud, const SkinLut& lut, const RigidTra
                      const SkinDisplacement& found, double skin_offset_mm) {
     constexpr double kNear_mm = 10, kFacingCosine = 0.5;
     const bool has_normals = cloud.normals_in_rig.size() == cloud.size();
-    const Around around(found);
+    const Places places(found);
     SkinAgain again;
     std::vector<double> off_mm;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -52,7 +48,7 @@ SkinAgain skin_again(const PointCloud& cloud, const SkinLut& lut, const RigidTra
         if (!skin || skin->flags != kSkin) continue;
         const Vector3d normal = skin->normal_in_ct.cast<double>(), foot = skin->position_in_ct.cast<double>();
         if (has_normals && !((ct_from_rig.linear() * cloud.normals_in_rig[i]).dot(normal) > kFacingCosine)) continue;
-        if (!((p - foot).norm() < kNear_mm) || !around.holds(foot)) continue;
+        if (!((p - foot).norm() < kNear_mm) || !places.holds(p - (p - foot).dot(normal) * normal)) continue;
         again.cloud.points_in_rig.push_back(cloud.points_in_rig[i]);
         if (has_normals) again.cloud.normals_in_rig.push_back(cloud.normals_in_rig[i]);
         off_mm.push_back(std::abs((p - foot).dot(normal) - skin_offset_mm));

@@ -13,8 +13,8 @@ struct SkinAgain {
     double median_mm = 0;  ///< of these from the skin, absolute; 0 when there are none
 };
 
-/// Cloth beside the skin is left out: it says nothing of where the skin lies. `found` known: only where that match
-/// found skin among cloth, to within two of its places; not known: wherever the CT shows skin. Distances are counted
+/// Cloth beside the skin is left out: it says nothing of where the skin lies. `found` known: only in the
+/// places where that match found skin among cloth; not known: wherever the CT shows skin. Distances are counted
 /// from `skin_offset_mm` outside of the CT's skin.
 SkinAgain skin_again(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
                      const SkinDisplacement& found, double skin_offset_mm);

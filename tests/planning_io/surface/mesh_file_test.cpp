@@ -119,6 +119,8 @@ TEST(CloudFile, NormalsAreBroughtToUnitLengthAndMissingOnesAreNone) {
     write("1 2 3  0 0 0  0.1\n4 5 6  0 0 0  0.2\n7 8 9  1 0 0  0.3\n", 3);
     EXPECT_TRUE(read_cloud(file).normals_in_rig.empty()) << "what most lack is a column that says nothing";
     EXPECT_EQ(read_cloud(file).size(), 3U);
+    write("0 0 0  0 0 0  0.1\n0 0 0  0 0 0  0.2\n7 8 9  1 0 0  0.3\n", 3);
+    EXPECT_EQ(read_cloud(file).normals_in_rig.size(), 1U) << "of what was measured all have one";
 }
 
 // What was not measured is exported at the origin, or at one and the same place.

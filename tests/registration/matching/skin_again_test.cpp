@@ -39,7 +39,7 @@ TEST(SkinAgain, ClothBesideTheSkinDoesNotSayThatTheSkinLiesElsewhere) {
     const PointCloud later = moved(face.all, rig_from_ct);
     const SkinAgain again = skin_again(later, head_lut(), rig_from_ct.inverse(), found, 0);
     EXPECT_LT(again.median_mm, 0.3);
-    EXPECT_GT(static_cast<double>(again.cloud.size()), 0.9 * static_cast<double>(face.skin.size()));
+    EXPECT_GT(static_cast<double>(again.cloud.size()), 0.6 * static_cast<double>(face.skin.size()));
     EXPECT_GT(skin_again(later, head_lut(), rig_from_ct.inverse(), {}, 0).median_mm, kCloth_mm - 1)
         << "it is the place that tells them apart";
 }
