@@ -25,8 +25,15 @@ struct VolumeCase {
 /// mixed folders.
 std::vector<VolumeCase> sound_volumes();
 
-/// Everything that is to be refused.
-std::vector<VolumeCase> spoilt_volumes();
+/// Everything that is to be refused: DICOM series, then files of one volume.
+std::vector<VolumeCase> spoilt_series();
+std::vector<VolumeCase> spoilt_files();
+inline std::vector<VolumeCase> spoilt_volumes() {
+    std::vector<VolumeCase> list = spoilt_series();
+    const std::vector<VolumeCase> files = spoilt_files();
+    list.insert(list.end(), files.begin(), files.end());
+    return list;
+}
 
 /// For a failed test's message.
 inline void PrintTo(const VolumeCase& c, std::ostream* out) {

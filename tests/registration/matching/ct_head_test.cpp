@@ -137,6 +137,14 @@ PointCloud twisted(PointCloud cloud, double per_mm) {
     return cloud;
 }
 
+/// How far beside a place of the CT's skin light that is drawn by the pose falls from where that place is in rig, 95 %.
+double light_off(const RigidTransform& patient_from_ct, const PointCloud& of_ct, const PointCloud& in_rig) {
+    std::vector<double> off_mm;
+    for (std::size_t k = 0; k < of_ct.size(); ++k)
+        off_mm.push_back((patient_from_ct * of_ct.points_in_rig[k] - in_rig.points_in_rig[k]).norm());
+    return quantile(std::move(off_mm), 0.95);
+}
+
 // Skin that a twist moves along itself leaves small residuals, and light drawn by any pose is off.
 TEST(CtHead, AHeadThatWasTwistedInTheCtIsAskedAboutAndTheBoundKnows) {
     const CtHead* head = ct_head();
@@ -152,13 +160,10 @@ TEST(CtHead, AHeadThatWasTwistedInTheCtIsAskedAboutAndTheBoundKnows) {
         const RegistrationResult result = register_patient(cloud, head->lut);
         if (i % 3 == 2) {
             EXPECT_EQ(result.verdict, Verdict::yes) << "the head is that of the CT";
-            EXPECT_LT(result.shape_change_mm, 0.4);
+            EXPECT_LT(result.shape_change_mm.value_or(9), 0.4);
             continue;
         }
-        std::vector<double> light_mm;
-        for (std::size_t k = 0; k < of_ct.size(); ++k)
-            light_mm.push_back((result.patient_from_ct * of_ct.points_in_rig[k] - cloud.points_in_rig[k]).norm());
-        const double light_off_mm = quantile(light_mm, 0.95);
+        const double light_off_mm = light_off(result.patient_from_ct, of_ct, cloud);
         const bool wrong_light = light_off_mm > 1;
         off += wrong_light;
         wrong += wrong_light && result.verdict == Verdict::yes;
@@ -189,10 +194,7 @@ TEST(CtHead, AThinScanOfATwistedHeadIsNoYesAndOfAStillOneIs) {
         const RegistrationResult result = register_patient(cloud, head->lut);
         if (result.verdict == Verdict::no) continue;
         const PointCloud truth = moved(twisted(of_ct, per_mm), rig_from_ct);
-        std::vector<double> light_mm;
-        for (std::size_t k = 0; k < of_ct.size(); ++k)
-            light_mm.push_back((result.patient_from_ct * of_ct.points_in_rig[k] - truth.points_in_rig[k]).norm());
-        const double light_off_mm = quantile(light_mm, 0.95);
+        const double light_off_mm = light_off(result.patient_from_ct, of_ct, truth);
         still_yes += still && result.verdict == Verdict::yes;
         off += light_off_mm > 1.2;
         wrong += light_off_mm > 1.2 && result.verdict == Verdict::yes;
