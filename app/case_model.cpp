@@ -54,6 +54,21 @@ std::vector<Eigen::Vector3d> points_on_skin(const Plan& plan) {
     return points;
 }
 
+/// Of landmarks, of a scan of skin, or of what was taken for skin among cloth.
+std::string evidence_of_fit(const RegistrationResult& result) {
+    if (!(result.inlier_distance_mm > 0))
+        return fmt::format("Residual {:.2f} mm rms, of {} landmarks.", result.residual_rms_mm, result.points);
+    const std::size_t judged = result.judged_points > 0 ? result.judged_points : result.points;  // (of an older file)
+    if (!result.skin_fraction)
+        return fmt::format("Residual {:.2f} mm rms; {:.0f} % of {} points within {:.1f} mm of the skin.",
+                           result.residual_rms_mm, 100 * result.inlier_fraction, judged, result.inlier_distance_mm);
+    return fmt::format(
+        "Residual {:.2f} mm rms; {:.0f} % of the {} points taken for skin ({:.0f} % of the scan's surface) within "
+        "{:.1f} mm of it.",
+        result.residual_rms_mm, 100 * result.inlier_fraction, judged, 100 * *result.skin_fraction,
+        result.inlier_distance_mm);
+}
+
 }  // namespace
 
 std::string side_of_plan(const Plan& plan, const SkinSurface& skin) {
@@ -196,25 +211,6 @@ std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud&
     }
     return distances;
 }
-
-namespace {
-
-/// Of landmarks, of a scan of skin, or of what was taken for skin among cloth.
-std::string evidence_of_fit(const RegistrationResult& result) {
-    if (!(result.inlier_distance_mm > 0))
-        return fmt::format("Residual {:.2f} mm rms, of {} landmarks.", result.residual_rms_mm, result.points);
-    const std::size_t judged = result.judged_points > 0 ? result.judged_points : result.points;  // (of an older file)
-    if (!result.skin_fraction)
-        return fmt::format("Residual {:.2f} mm rms; {:.0f} % of {} points within {:.1f} mm of the skin.",
-                           result.residual_rms_mm, 100 * result.inlier_fraction, judged, result.inlier_distance_mm);
-    return fmt::format(
-        "Residual {:.2f} mm rms; {:.0f} % of the {} points taken for skin ({:.0f} % of the scan's surface) within "
-        "{:.1f} mm of it.",
-        result.residual_rms_mm, 100 * result.inlier_fraction, judged, 100 * *result.skin_fraction,
-        result.inlier_distance_mm);
-}
-
-}  // namespace
 
 std::vector<std::string> evidence_of(const RegistrationResult& result) {
     std::vector<std::string> lines;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/belonging.h"
+#include "app/compare_skin.h"
 #include "app/session.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/plan/plan_file.h"
@@ -165,7 +166,7 @@ void Session::compare_skin_again(const KeptMatch& match, const RigidTransform& r
     const RegistrationResult& found = match.registration;
     const RigidTransform rig_from_ct = rig_from_patient * found.patient_from_ct;
     SkinCheck skin;
-    compare_skin(*check.cloud, found, rig_from_ct, skin);
+    compare_skin(*check.cloud, case_, found, rig_from_ct, limits.max_more_residual_mm, skin);
     check.residual_mm = skin.residual_mm;
     check.skin_off_mm = skin.off_mm, check.bound_mm = skin.bound_mm;
     // Where cloth was left out at the match it may be most of this scan as well.

@@ -221,8 +221,6 @@ private:
     void start_overlay();
     std::optional<LightCheck> look_at_light(const Update& update);
     TrackedPose pose_under_white();
-    void compare_skin(const PointCloud& cloud, const RegistrationResult& found, const RigidTransform& rig_from_ct,
-                      SkinCheck& check) const;
     const SkinSurface& skin_of_light() const { return now_ ? now_->skin : planned_.skin; }
     void watch_light(Update& update);
     void note_shown(const OverlayStep& overlay);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "planning_io/types/even_direction.h"
 #include "projection/render_drawing.h"
 #include "projection/stroke_places.h"
 
@@ -131,11 +132,7 @@ Vector3d free_view_of(const SkinSurface& skin, const Vector3d& place_in_ct) {
                                              std::cos(elevation) * at.normal_in_ct.y() / level, std::sin(elevation))
                                   : Vector3d(0, -std::cos(elevation), std::sin(elevation));
     std::vector<Vector3d> ways{straight};
-    for (int i = 0; i < kWays; ++i) {  // evenly over the band, by the golden angle
-        const double z = std::sin(kLowest) + (std::sin(kHighest) - std::sin(kLowest)) * (i + 0.5) / kWays;
-        const double turn = i * std::numbers::pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
-        ways.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
-    }
+    for (int i = 0; i < kWays; ++i) ways.push_back(even_direction(i, kWays, std::sin(kLowest), std::sin(kHighest)));
     std::stable_sort(ways.begin() + 1, ways.end(), [&](const Vector3d& u, const Vector3d& v) {
         return u.dot(at.normal_in_ct) > v.dot(at.normal_in_ct);
     });

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "planning_io/types/even_direction.h"
 
 namespace planlight {
 namespace {
@@ -121,11 +122,7 @@ bool in_the_body(const SkinSurface& skin, const Vector3d& p) {
     if (skin.inside(p)) return true;
     constexpr int kWays = 96;
     int ended = 0;
-    for (int i = 0; i < kWays; ++i) {  // evenly over the sphere, along a spiral
-        const double z = 1 - (2 * i + 1.0) / kWays, around = i * std::numbers::pi * (3 - std::sqrt(5.0)),
-                     across = std::sqrt(1 - z * z);
-        ended += skin.first_hit({p, Vector3d(across * std::cos(around), across * std::sin(around), z)}).has_value();
-    }
+    for (int i = 0; i < kWays; ++i) ended += skin.first_hit({p, even_direction(i, kWays)}).has_value();
     return 4 * ended >= 3 * kWays;
 }
 

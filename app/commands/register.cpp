@@ -151,32 +151,25 @@ nlohmann::json json_of(const std::optional<double>& value) {
     return value && std::isfinite(*value) ? nlohmann::json(*value) : nlohmann::json();
 }
 
-int run_register(const RegisterOptions& options) {
-    check_pdf(options.pdf);
-    const Case the_case = read_case(options.case_folder);
-    std::shared_ptr<const PointCloud> cloud;
-    std::optional<RigState> rig;
-    RegistrationResult result = match(options, the_case, cloud, rig);
-    take_case_and_rig(the_case, rig, result);
-    const bool keeps = keeps_what_was_there(result, options.out);
-    if (!keeps) write_registration(result, options.out);
-    if (!options.slicer_transform.empty() && result.verdict != Verdict::no)
-        write_slicer_transform(result.patient_from_ct, options.slicer_transform);
-    const CaseDrawing drawing(the_case);
-    if (!keeps) write_certificate(options, the_case, drawing, result, cloud);
-    const std::vector<double> predicted =
-        result.verdict == Verdict::no ? std::vector<double>{} : predicted_errors_mm(the_case.plan, result);
+/// How far off each item may be; none of a match that was refused.
+nlohmann::json items_json(const Case& the_case, const CaseDrawing& drawing, const RegistrationResult& result) {
     nlohmann::json items = nlohmann::json::array();
+    if (result.verdict == Verdict::no) return items;
+    const std::vector<double> predicted = predicted_errors_mm(the_case.plan, result);
     for (std::size_t i = 0; i < predicted.size() && i < drawing.drawing.items.size(); ++i)
         items.push_back({{"name", drawing.drawing.items[i].name}, {"predicted_95_mm", json_of(predicted[i])}});
-    if (options.json) {
-        const bool scanned = result.judged_points > 0, landmarks = options.cloud.empty() && result.residual_rms_mm > 0;
-        const auto where = [](bool known, double value) { return known ? json_of(value) : nlohmann::json(); };
-        const Eigen::Matrix4d m = result.patient_from_ct.matrix();
-        nlohmann::json matrix = nlohmann::json::array();
-        for (int r = 0; r < 4; ++r) matrix.push_back({m(r, 0), m(r, 1), m(r, 2), m(r, 3)});
-        const nlohmann::json out = {
-            {"case", the_case.code},
+    return items;
+}
+
+/// Null where it is not known.
+nlohmann::json result_json(const Case& the_case, const RegistrationResult& result, const nlohmann::json& items,
+                           bool of_scan) {
+    const bool scanned = result.judged_points > 0, landmarks = !of_scan && result.residual_rms_mm > 0;
+    const auto where = [](bool known, double value) { return known ? json_of(value) : nlohmann::json(); };
+    const Eigen::Matrix4d m = result.patient_from_ct.matrix();
+    nlohmann::json matrix = nlohmann::json::array();
+    for (int r = 0; r < 4; ++r) matrix.push_back({m(r, 0), m(r, 1), m(r, 2), m(r, 3)});
+    return {{"case", the_case.code},
             {"title", title_of(the_case)},
             {"verdict", name_of(result.verdict)},
             {"reasons", result.reasons},
@@ -201,23 +194,43 @@ int run_register(const RegisterOptions& options) {
             {"rig", result.rig ? nlohmann::json(rig_state_json(*result.rig)) : nlohmann::json()},
             {"items", items},
             {"seconds", {{"initial", result.initial_match_s}, {"fine", result.refine_s}}}};
-        std::cout << json_text(out) << '\n';
-    } else {
-        fmt::print("{}\n", title_of(the_case));
-        if (options.cloud.empty())
-            fmt::print("{}: {} landmarks, {:.2f} mm rms.\n", name_of(result.verdict), result.points,
-                       result.residual_rms_mm);
+}
+
+void print(const Case& the_case, const RegistrationResult& result, const nlohmann::json& items, bool of_scan) {
+    fmt::print("{}\n", title_of(the_case));
+    if (!of_scan)
+        fmt::print("{}: {} landmarks, {:.2f} mm rms.\n", name_of(result.verdict), result.points,
+                   result.residual_rms_mm);
+    else
+        fmt::print("{}: {}.\n", name_of(result.verdict), scan_in_words(result));
+    const SiteSettings site = read_site_settings();
+    for (const auto& item : items)
+        if (const auto& mm = item["predicted_95_mm"]; mm.is_number())
+            fmt::print("  {}: within {} (95 %)\n", item["name"].get<std::string>(),
+                       length_text(mm.get<double>(), site));
         else
-            fmt::print("{}: {}.\n", name_of(result.verdict), scan_in_words(result));
-        const SiteSettings site = read_site_settings();
-        for (const auto& item : items)
-            if (const auto& mm = item["predicted_95_mm"]; mm.is_number())
-                fmt::print("  {}: within {} (95 %)\n", item["name"].get<std::string>(),
-                           length_text(mm.get<double>(), site));
-            else
-                fmt::print("  {}: how far it may be off is not known\n", item["name"].get<std::string>());
-        for (const auto& reason : result.reasons) fmt::print("  {}\n", reason);
-    }
+            fmt::print("  {}: how far it may be off is not known\n", item["name"].get<std::string>());
+    for (const auto& reason : result.reasons) fmt::print("  {}\n", reason);
+}
+
+int run_register(const RegisterOptions& options) {
+    check_pdf(options.pdf);
+    const Case the_case = read_case(options.case_folder);
+    std::shared_ptr<const PointCloud> cloud;
+    std::optional<RigState> rig;
+    RegistrationResult result = match(options, the_case, cloud, rig);
+    take_case_and_rig(the_case, rig, result);
+    const bool keeps = keeps_what_was_there(result, options.out);
+    if (!keeps) write_registration(result, options.out);
+    if (!options.slicer_transform.empty() && result.verdict != Verdict::no)
+        write_slicer_transform(result.patient_from_ct, options.slicer_transform);
+    const CaseDrawing drawing(the_case);
+    if (!keeps) write_certificate(options, the_case, drawing, result, cloud);
+    const nlohmann::json items = items_json(the_case, drawing, result);
+    if (options.json)
+        std::cout << json_text(result_json(the_case, result, items, !options.cloud.empty())) << '\n';
+    else
+        print(the_case, result, items, !options.cloud.empty());
     const bool bad_rig = result.rig && result.rig->verdict == RigState::Verdict::not_trusted;
     if (result.verdict == Verdict::no)
         throw CheckFailedError(

@@ -1,17 +1,17 @@
 #include "app/recording/match_fate.h"
 
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
+#include "app/recording/session_events.h"
 #include "planning_io/types/error.h"
 #include "projection/light_gate.h"
 
 namespace planlight {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 /// Hours of updates and rulings, as the recorder writes them, say nothing of a match, and are not parsed.
 bool may_tell(std::string_view text) {
@@ -90,10 +90,7 @@ void FateOfMatches::take_event(const std::string& text) {
     if (call == "new_match") light_stopped_ = false, skin_off_mm_ = 0;
     if (call == "restart") light_stopped_ = false;
     if (call == "skin_checked") {
-        const auto off = event.find("off_mm");  // null: elsewhere, nobody can say by how much
-        skin_off_mm_ = off == event.end() ? 0
-                       : off->is_number() ? off->get<double>()
-                                          : std::numeric_limits<double>::infinity();
+        skin_off_mm_ = session_events::skin_off_mm(event);
         light_stopped_ |= skin_off_mm_ > LightGateSettings{}.stop_mm;
     }
     if (event.value("stop", false)) light_stopped_ = true;

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "registration/matching/cell_density.h"
+
 namespace planlight {
 namespace {
 
@@ -86,14 +88,6 @@ Cells gather(const PointCloud& cloud, std::vector<int>& cell_of_point) {
     return all;
 }
 
-/// A heap of points at one place, as what was not measured is at the origin, does not say how dense the scan is.
-int most_to_count(const Cells& all) {
-    constexpr std::size_t kTimesMean = 8;
-    std::size_t points = 0;
-    for (const CloudCell& cell : all.cells) points += static_cast<std::size_t>(cell.points);
-    return static_cast<int>(1 + kTimesMean * points / std::max<std::size_t>(1, all.cells.size()));
-}
-
 /// Few points round it, or more than 3 mm off the surface of the cells round it.
 void mark_strays(Cells& all) {
     constexpr double kFew = 0.2;
@@ -101,7 +95,7 @@ void mark_strays(Cells& all) {
     std::vector<int> around(all.cells.size());
     std::vector<char> off(all.cells.size(), 0);
     std::vector<int> as_seen;
-    const int most = most_to_count(all);
+    const int most = most_to_count(all.cells, &CloudCell::points);
     for (std::size_t c = 0; c < all.cells.size(); ++c) {
         const CloudCell& cell = all.cells[c];
         Vector3f sum = cell.position * static_cast<float>(cell.points), normals = all.normal_sum[c];

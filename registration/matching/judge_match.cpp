@@ -80,10 +80,6 @@ void judge_mirror_and_scale(const RegistrationSettings& settings, const Registra
                      another);
 }
 
-}  // namespace
-
-namespace {
-
 /// One sentence at most: too few points on skin are one reason, whatever cannot be told for them.
 void judge_what_is_known(const FineMatch& fine, const RegistrationResult& result, Judgement& judgement) {
     if (!std::isfinite(fine.weakest.sigma_mm))

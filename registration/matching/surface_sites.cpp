@@ -8,6 +8,7 @@
 
 #include "planning_io/types/statistics.h"
 #include "planning_io/types/triangle_mesh.h"
+#include "registration/matching/cell_density.h"
 
 namespace planlight {
 namespace {
@@ -90,14 +91,6 @@ bool on_surface(const Cell& cell, const Cell& around) {
     return std::abs(between.dot(around.normal_sum)) < kOff_mm * length;
 }
 
-/// A heap of points at one place, as what was not measured is at the origin, does not say how dense the scan is.
-int most_to_count(const std::vector<Cell>& cells) {
-    constexpr std::size_t kTimesMean = 8;
-    std::size_t points = 0;
-    for (const Cell& cell : cells) points += static_cast<std::size_t>(cell.count);
-    return static_cast<int>(1 + kTimesMean * points / std::max<std::size_t>(1, cells.size()));
-}
-
 /// Coordinate-wise median: strays, however far, do not move it.
 Vector3f median_position(const std::vector<Vector3d>& points) {
     Vector3f middle = Vector3f::Zero();
@@ -125,7 +118,7 @@ std::vector<SurfaceSite> sites_of_cloud(const PointCloud& cloud) {
     }
     std::vector<Cell> around;
     std::vector<int> counts;
-    const int most = most_to_count(map.cells());
+    const int most = most_to_count(map.cells(), &Cell::count);
     for (const Cell& cell : map.cells()) {
         around.push_back(map.neighbourhood(cell));
         for (int i = 0; i < std::min(cell.count, most); ++i)

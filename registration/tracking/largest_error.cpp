@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
+
+#include "planning_io/types/even_direction.h"
 
 namespace planlight {
 namespace {
@@ -68,14 +69,11 @@ double largest_distance(const RigidTransform& a, const RigidTransform& b, const 
 }
 
 std::vector<Vector3d> outermost(const std::vector<Vector3d>& places) {
-    constexpr std::size_t kDirections = 200;
+    constexpr int kDirections = 200;
     if (places.size() <= kDirections) return places;
     std::set<std::size_t> kept;
-    for (std::size_t k = 0; k < kDirections; ++k) {  // even over the sphere: a spiral of golden angles
-        const double z = 1 - (2 * static_cast<double>(k) + 1) / kDirections;
-        const double angle = static_cast<double>(k) * std::numbers::pi * (3 - std::sqrt(5.));
-        const double beside = std::sqrt(1 - z * z);
-        const Vector3d direction(beside * std::cos(angle), beside * std::sin(angle), z);
+    for (int k = 0; k < kDirections; ++k) {
+        const Vector3d direction = even_direction(k, kDirections);
         std::size_t farthest = 0;
         for (std::size_t i = 1; i < places.size(); ++i)
             if (direction.dot(places[i]) > direction.dot(places[farthest])) farthest = i;
