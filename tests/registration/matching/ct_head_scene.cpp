@@ -87,4 +87,34 @@ PointCloud scan_of_ct(const Volume& volume, const Vector3d& eye_in_ct, double wi
     return cloud;
 }
 
+PointCloud ct_view(const CtHead& head, unsigned i, double width_mm, int points) {
+    static const std::vector<Vector3d> kDirections{
+        {0.1, -1, 0.15}, {0.8, -0.7, 0.1}, {-0.75, -0.7, 0.2}, {1, -0.25, 0.1}};
+    const Vector3d size(head.volume.size[0], head.volume.size[1], head.volume.size[2]);
+    const Vector3d middle = head.volume.ct_from_voxel * Vector3d(0.5 * size);
+    return scan_of_ct(head.volume, middle + 900 * kDirections[i % kDirections.size()].normalized(), width_mm, points,
+                      i);
+}
+
+PointCloud twisted(PointCloud cloud, double rad_per_mm) {
+    Vector3d middle = Vector3d::Zero();
+    for (const Vector3d& p : cloud.points_in_rig) middle += p / static_cast<double>(cloud.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        Vector3d& p = cloud.points_in_rig[i];
+        const Eigen::AngleAxisd turn(rad_per_mm * (p.z() - middle.z()), Vector3d::UnitZ());
+        const Vector3d axis(middle.x(), middle.y() + 70, p.z());
+        p = axis + turn * (p - axis);
+        cloud.normals_in_rig[i] = turn * cloud.normals_in_rig[i];
+    }
+    return cloud;
+}
+
+std::vector<double> light_off_mm(const RigidTransform& patient_from_ct, const PointCloud& of_ct,
+                                 const PointCloud& in_rig) {
+    std::vector<double> off_mm;
+    for (std::size_t k = 0; k < of_ct.size(); ++k)
+        off_mm.push_back((patient_from_ct * of_ct.points_in_rig[k] - in_rig.points_in_rig[k]).norm());
+    return off_mm;
+}
+
 }  // namespace planlight::test

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "planning_io/types/point_cloud.h"
+#include "planning_io/types/rigid_transform.h"
 #include "planning_io/types/skin_lut.h"
 #include "planning_io/types/volume.h"
 
@@ -19,5 +22,16 @@ const CtHead* ct_head();
 /// volume's middle.
 PointCloud scan_of_ct(const Volume& volume, const Eigen::Vector3d& eye_in_ct, double width_mm, int points,
                       unsigned seed);
+
+/// The same from the front, half left, half right, left (`i` in turn), 0.9 m from the CT's middle.
+PointCloud ct_view(const CtHead& head, unsigned i, double width_mm, int points);
+
+/// As by a patient who slowly turned while the table moved: every slice about the body's axis, the more the higher.
+PointCloud twisted(PointCloud cloud, double rad_per_mm);
+
+/// How far beside a place of the CT's skin light that is drawn by the pose falls from where that place is in rig, mm:
+/// of each point of the scan `of_ct`, which lies at the same index of `in_rig`.
+std::vector<double> light_off_mm(const RigidTransform& patient_from_ct, const PointCloud& of_ct,
+                                 const PointCloud& in_rig);
 
 }  // namespace planlight::test
