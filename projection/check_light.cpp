@@ -24,8 +24,8 @@ struct LookedAt {
     std::array<double, 2> slopes{};  ///< `sideways_slope` of the cameras
 };
 
-LookedAt looked_at(const StrokeSegment& segment, const std::array<CameraLook, 2>& looks, const RigCalibration& rig,
-                   const RigidTransform& rig_from_ct) {
+LookedAt looked_at(const StrokeSegment& segment, const std::array<CameraLook, 2>& looks,
+                   const std::array<Vector3d, 2>& cameras_in_ct) {
     const StrokePlace& middle = segment.middle();
     LookedAt result;
     SeenSegment& seen = result.segment;
@@ -35,10 +35,8 @@ LookedAt looked_at(const StrokeSegment& segment, const std::array<CameraLook, 2>
     seen.normal_in_ct = middle.normal_in_ct;
     seen.tick = segment.tick;
     result.looks = looks;
-    const RigidTransform ct_from_rig = rig_from_ct.inverse();
     for (std::size_t c = 0; c < 2; ++c) {
-        result.slopes[c] =
-            sideways_slope(seen, ct_from_rig * (c == 0 ? rig.left_camera : rig.right_camera).centre_in_rig());
+        result.slopes[c] = sideways_slope(seen, cameras_in_ct[c]);
         if (looks[c].asked) seen.background += looks[c].background / (looks[0].asked && looks[1].asked ? 2 : 1);
         if (!looks[c].light) continue;
         seen.seen = true;
@@ -213,7 +211,8 @@ struct LightChecker::Parts {
     Sight sight_of(const StrokeSegment& segment, const RigidTransform& rig_from_ct) const;
     void look_around(const RigidTransform& rig_from_ct);
     void look_at(const FigurePatch& patch, const Sight& sight, const RigidTransform& rig_from_ct,
-                 const StereoFrame& pictures, std::vector<LookedAt>& looked) const;
+                 const StereoFrame& pictures, const std::array<Vector3d, 2>& cameras_in_ct,
+                 std::vector<LookedAt>& looked) const;
     std::optional<double> far_light(const RigidTransform& rig_from_ct, const StereoFrame& pictures) const;
 };
 
@@ -249,13 +248,14 @@ void LightChecker::Parts::look_around(const RigidTransform& rig_from_ct) {
 
 /// A small figure counts as two stretches, square to each other.
 void LightChecker::Parts::look_at(const FigurePatch& patch, const Sight& sight, const RigidTransform& rig_from_ct,
-                                  const StereoFrame& pictures, std::vector<LookedAt>& looked) const {
+                                  const StereoFrame& pictures, const std::array<Vector3d, 2>& cameras_in_ct,
+                                  std::vector<LookedAt>& looked) const {
     std::array<std::array<CameraLook, 2>, 2> by_camera;
     if (sight.seen[0]) by_camera[0] = find_figure(patch, rig.left_camera, rig_from_ct, pictures.left, settings);
     if (sight.seen[1]) by_camera[1] = find_figure(patch, rig.right_camera, rig_from_ct, pictures.right, settings);
     for (std::size_t side = 0; side < 2; ++side) {
         const std::array<CameraLook, 2> looks{by_camera[0][side], by_camera[1][side]};
-        if (looks[0].asked || looks[1].asked) looked.push_back(looked_at(patch.sides[side], looks, rig, rig_from_ct));
+        if (looks[0].asked || looks[1].asked) looked.push_back(looked_at(patch.sides[side], looks, cameras_in_ct));
     }
 }
 
@@ -301,6 +301,9 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
     const auto segments = p.segments.size();
     const std::size_t most = std::max<std::size_t>(1, p.settings.most_segments);
     const std::size_t step = std::max<std::size_t>(1, (p.sights.size() + most - 1) / most);
+    const RigidTransform ct_from_rig = rig_from_ct.inverse();
+    const std::array<Vector3d, 2> cameras_in_ct{ct_from_rig * p.rig.left_camera.centre_in_rig(),
+                                                ct_from_rig * p.rig.right_camera.centre_in_rig()};
     std::vector<LookedAt> looked;
     for (std::size_t i = p.turn++ % step; i < p.sights.size(); i += step) {
         const Sight& sight = p.sights[i];
@@ -310,13 +313,13 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
         check.lit += counts;
         check.items[static_cast<std::size_t>(segment.item)].lit_segments += counts;
         if (i >= segments) {
-            p.look_at(p.patches[i - segments], sight, rig_from_ct, frame, looked);
+            p.look_at(p.patches[i - segments], sight, rig_from_ct, frame, cameras_in_ct, looked);
             continue;
         }
         std::array<CameraLook, 2> looks;
         if (sight.seen[0]) looks[0] = find_light(segment, p.rig.left_camera, rig_from_ct, frame.left, p.settings);
         if (sight.seen[1]) looks[1] = find_light(segment, p.rig.right_camera, rig_from_ct, frame.right, p.settings);
-        if (looks[0].asked || looks[1].asked) looked.push_back(looked_at(segment, looks, p.rig, rig_from_ct));
+        if (looks[0].asked || looks[1].asked) looked.push_back(looked_at(segment, looks, cameras_in_ct));
     }
     join(looked, p.settings, check);
     sum_up_items(check);
