@@ -279,8 +279,8 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     ruling.headline = "The plan is on the skin.";
     ruling.details = {fmt::format("Measured by the cameras: 95 % of the light within {} mm of the plan.",
                                   said(std::max(0.1, last_->off_mm)))};
-    constexpr double kNearlyAll = 0.9;
-    if (last_->expected < kNearlyAll * last_->lit)
+    constexpr double kMostOfIt = 0.75;
+    if (last_->expected < kMostOfIt * last_->lit)
         ruling.details.push_back(fmt::format("They can see about {:.0f} % of the light.",
                                              10 * std::round(10. * last_->expected / last_->lit)));
     return ruling;
