@@ -113,7 +113,8 @@ struct DrawingSettings {
 /// A label is put where it overlaps nothing and can be lit whole, or it is left out.
 ///
 /// Items come in the order osteotomy lines, boreholes, trajectories, cut planes. One that is not finite, lies more than
-/// three times `max_distance_to_skin_mm` from the skin, or has no place there (`no_place`), has no strokes, but says so.
+/// three times `max_distance_to_skin_mm` from the skin, or has no place there (`no_place`), has no strokes, but says
+/// so.
 PlanDrawing draw_plan(const Plan& plan, const SkinSurface& skin, const DrawingSettings& settings = {});
 
 /// The same on the skin as it is now (`skin_as_scanned` of `ct_skin`). What is fixed to the bone stays where it was
