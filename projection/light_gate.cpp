@@ -111,7 +111,9 @@ void LightGate::take(Instant at, const LightCheck& check) {
 }
 
 LightGate::Ruling LightGate::step(Instant at, bool lit, const std::optional<LightCheck>& check,
-                                  const std::vector<LightCause>& causes) {
+                                  const std::vector<LightCause>& causes, double unnoticed_mm) {
+    weak_ = unnoticed_mm > settings_.warn_unnoticed_mm ? weak_ + 1 : 0;
+    if (weak_ >= settings_.dark_after) weak_at_ = at, unnoticed_mm_ = unnoticed_mm;
     if (lit && verified_ && at - lit_at_ > settings_.verified_for) verified_ = false;
     if (lit && !lit_) lit_since_ = at;
     lit_ = lit;
@@ -260,6 +262,14 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     if (wrong != causes.end()) {
         ruling.found_wrong = true;
         ruling.headline = "LOOK: " + wrong->headline();
+        return ruling;
+    }
+    if (within_fresh(weak_at_, at)) {
+        ruling.headline = "LOOK: so few markers are seen that a slip would not show.";
+        ruling.details = {
+            fmt::format("Were one of them pushed aside by 1 mm, the plan could lie {:.0f} mm off without a sign.",
+                        unnoticed_mm_),
+            "Uncover more markers, or paste another and scan again."};
         return ruling;
     }
     if (!verified_) {

@@ -19,6 +19,7 @@ struct LightGateSettings {
     int least_seen = 5;                ///< stretches: fewer are no measurement
     int green_after = 3;               ///< good measurements in a row, of all the light and of each item
     int dark_after = 2;                ///< bad ones in a row
+    double warn_unnoticed_mm = 3;      ///< so far a marker that slips by 1 mm may move the plan before it shows
     double least_brighter = 0.3;  ///< the lines than the skin beside them, as a share of it; fainter ones are warned of
     Instant fresh = std::chrono::seconds(1);         ///< an older measurement is none
     Instant verified_for = std::chrono::minutes(5);  ///< of light that was interrupted; then a person looks again
@@ -52,9 +53,10 @@ public:
         std::optional<double> off_mm, sigma_mm;  ///< of the light beside the plan, as last measured
     };
 
-    /// One update: whether light is on the skin, what CHECK saw of it, if it looked, and what is known to be wrong.
+    /// One update: whether light is on the skin, what CHECK saw of it, if it looked, what is known to be wrong, and how
+    /// far a slip that the markers do not show may move the plan (`TrackedPose::external_reliability_mm`).
     Ruling step(Instant at, bool lit, const std::optional<LightCheck>& check,
-                const std::vector<LightCause>& causes = {});
+                const std::vector<LightCause>& causes = {}, double unnoticed_mm = 0);
 
     /// A person has looked at the light on landmarks and says that it is right.
     void verify(Instant at);
@@ -103,11 +105,13 @@ private:
     int good_ = 0, bad_ = 0;
     double brighter_ = 0;       ///< the lines than the skin beside them, mean of the last checks; 0: not known
     bool faint_ = false;        ///< by that
+    int weak_ = 0;              ///< poses running that a slip may move too far unnoticed
+    double unnoticed_mm_ = 0;   ///< by the last of them
     double stopped_at_mm_ = 0;  ///< of the light that was last stopped
     double skin_off_mm_ = 0;    ///< by the last check of the skin; 0: none
     std::optional<LightCheck> last_;
     std::vector<Item> items_;
-    Instant measured_at_{}, lit_at_{}, told_whole_at_ = Instant::min(), lit_since_{};
+    Instant measured_at_{}, lit_at_{}, told_whole_at_ = Instant::min(), weak_at_ = Instant::min(), lit_since_{};
 };
 
 }  // namespace planlight

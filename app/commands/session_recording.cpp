@@ -36,6 +36,7 @@ std::string settings_text(const SessionOptions& options, const SiteSettings& sit
                                   {"stop_mm", gate.stop_mm},
                                   {"least_seen_share", gate.least_seen_share},
                                   {"least_seen_of_item", gate.least_seen_of_item},
+                                  {"warn_unnoticed_mm", gate.warn_unnoticed_mm},
                                   {"fresh_s", seconds(gate.fresh)},
                                   {"verified_for_s", seconds(gate.verified_for)}}},
                                 {"site",

@@ -240,7 +240,8 @@ void LiveSession::follow(Session& session, Room& room) {
     const auto update = session.update();
     if (!light_permitted()) return;  // DARK was pressed meanwhile; its own turn comes next
     seen_at_ = update.frame.at;
-    LightGate::Ruling ruling = gate_.step(seen_at_, update.overlay.lit, update.light, update.causes);
+    LightGate::Ruling ruling =
+        gate_.step(seen_at_, update.overlay.lit, update.light, update.causes, update.pose.external_reliability_mm);
     if (ruling.stop) {
         stop_light(session, ruling);
         return;

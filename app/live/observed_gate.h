@@ -10,8 +10,8 @@ public:
     explicit ObservedGate(SessionObserver* observer) : observer_(observer) {}
 
     LightGate::Ruling step(Instant at, bool lit, const std::optional<LightCheck>& check,
-                           const std::vector<LightCause>& causes) {
-        LightGate::Ruling ruling = gate_.step(at, lit, check, causes);
+                           const std::vector<LightCause>& causes, double unnoticed_mm) {
+        LightGate::Ruling ruling = gate_.step(at, lit, check, causes, unnoticed_mm);
         if (observer_) observer_->gate(GateCall::step, at, 0, &ruling);
         return ruling;
     }

@@ -251,7 +251,8 @@ private:
                 return;
             }
             case GateCall::step: {
-                const auto ruling = gate_.step(last_.frame.at, last_.overlay.lit, last_.light, last_.causes);
+                const auto ruling = gate_.step(last_.frame.at, last_.overlay.lit, last_.light, last_.causes,
+                                               last_.pose.external_reliability_mm);
                 expect_ruling(call, last_.frame.at, ruling, event, recorded);
                 return;
             }

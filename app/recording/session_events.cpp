@@ -86,11 +86,9 @@ Json json_of(const LightCause& cause) {
 }
 
 Json json_of(const TrackedPose& pose) {
-    Json json = {{"rig_from_patient", nullptr},
-                 {"markers", {pose.markers_left, pose.markers_right}},
-                 {"residual_px", pose.residual_px},
-                 {"predicted_error_mm", pose.predicted_error_mm},
-                 {"bound_95_mm", pose.bound_95_mm}};
+    Json json = {{"rig_from_patient", nullptr},     {"markers", {pose.markers_left, pose.markers_right}},
+                 {"residual_px", pose.residual_px}, {"predicted_error_mm", pose.predicted_error_mm},
+                 {"bound_95_mm", pose.bound_95_mm}, {"external_reliability_mm", pose.external_reliability_mm}};
     if (pose.rig_from_patient)
         json["rig_from_patient"] = json_of(*pose.rig_from_patient);
     else

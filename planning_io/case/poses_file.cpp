@@ -51,6 +51,7 @@ void write_poses(const std::vector<TrackedPose>& poses, const fs::path& file,
                  {"residual_px", pose.residual_px},
                  {"predicted_error_mm", pose.predicted_error_mm},
                  {"bound_95_mm", pose.bound_95_mm},
+                 {"external_reliability_mm", pose.external_reliability_mm},
                  {"reason", pose.reason}});
     Json json{{"format", "planlight poses"}, {"version", kVersion}};
     if (origin) json["origin"] = json_of(*origin);
@@ -69,7 +70,7 @@ std::vector<TrackedPose> read_poses(const fs::path& file) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const JsonValue entry = list[i];
         entry.has_only({"at_ns", "rig_from_patient", "markers_left", "markers_right", "residual_px",
-                        "predicted_error_mm", "bound_95_mm", "reason"});
+                        "predicted_error_mm", "bound_95_mm", "external_reliability_mm", "reason"});
         TrackedPose& pose = poses[i];
         pose.at = instant_of(entry.at("at_ns"));
         if (const auto transform = entry.find("rig_from_patient")) pose.rig_from_patient = transform->transform();
@@ -78,6 +79,7 @@ std::vector<TrackedPose> read_poses(const fs::path& file) {
         if (const auto residual = entry.find("residual_px")) pose.residual_px = residual->number();
         if (const auto error = entry.find("predicted_error_mm")) pose.predicted_error_mm = error->number();
         if (const auto bound = entry.find("bound_95_mm")) pose.bound_95_mm = bound->number();
+        if (const auto reach = entry.find("external_reliability_mm")) pose.external_reliability_mm = reach->number();
         if (const auto reason = entry.find("reason")) pose.reason = reason->text();
         if (!pose.rig_from_patient && pose.reason.empty())
             entry.refuse("has neither a pose nor a reason why there is none");

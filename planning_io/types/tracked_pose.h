@@ -16,7 +16,9 @@ struct TrackedPose {
     double residual_px = 0;                          ///< rms reprojection over both pictures
     double predicted_error_mm = 0;                   ///< one sigma, the largest where the pose counts
     double bound_95_mm = 0;                          ///< smaller than this in 95 of 100 cases; 0: not known
-    std::string reason;                              ///< why there is no pose; empty when there is one
+    /// How far a marker that slips by 1 mm may move it, where it counts, before the others show that; 0: not known.
+    double external_reliability_mm = 0;
+    std::string reason;  ///< why there is no pose; empty when there is one
 };
 
 }  // namespace planlight

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <utility>
 
+#include "registration/tracking/external_reliability.h"
 #include "registration/tracking/largest_error.h"
 
 namespace planlight {
@@ -22,6 +24,7 @@ constexpr double kHuber = 3;        // sigmas
 constexpr double kAgreement = 3.5;  // reduced chi-square up to which the markers agree
 constexpr double kCalibrationPx = 0.07;
 constexpr double kRivalsApart_mm = 0.4;  // where it counts: farther, they are not one answer
+constexpr double kSlip_mm = 1;           // that should show
 constexpr double kNearLine = 0.2;        // spread across the line that the markers lie along, of that along it
 
 struct Linearised {
@@ -106,16 +109,21 @@ struct LeftOut {
     double chi = 0;
 };
 
-/// The fits with each marker left out, the best first; those that cannot be checked last.
+/// The fits with each marker left out, the best first; those that cannot be checked last. From each start, as the pose
+/// that the wrong marker has turned may lie in another minimum than the one of the rest.
 std::vector<LeftOut> leave_one_out(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
-                                   const std::vector<Sighting>& sightings, const RigidTransform& start) {
+                                   const std::vector<Sighting>& sightings, const std::vector<RigidTransform>& starts) {
     std::set<int> seen;
     for (const Sighting& s : sightings) seen.insert(s.marker);
     std::vector<LeftOut> fits;
     for (const int marker : seen) {
         const auto rest = without(sightings, marker);
         LeftOut one{marker, std::nullopt, std::numeric_limits<double>::infinity()};
-        if (rest.size() >= 4) one.fit = fit_pose(rig, markers, rest, start);
+        for (const RigidTransform& start : starts) {
+            if (rest.size() < 4) break;
+            const auto fit = fit_pose(rig, markers, rest, start);
+            if (fit && (!one.fit || fit->chi_square < one.fit->chi_square)) one.fit = fit;
+        }
         if (one.fit) one.chi = reduced_chi_square(*one.fit, rest.size());
         fits.push_back(one);
     }
@@ -177,6 +185,27 @@ std::string too_uncertain(const std::vector<PatientMarker>& markers, const std::
                        at_most_mm);
 }
 
+/// Whether the markers set aside stand where `fit` puts them: within three sigmas of their sightings and the pose.
+void look_at_set_aside(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
+                       const std::vector<Sighting>& aside, const PoseFit& fit, CheckedPose& result) {
+    std::map<int, double> sigma_mm;
+    for (const Sighting& s : aside) {
+        const CameraModel& camera = s.left ? rig.left_camera : rig.right_camera;
+        const Eigen::Vector3d p = fit.rig_from_patient * markers[static_cast<std::size_t>(s.marker)].centre_in_patient;
+        const double mm_per_px = (camera.device_from_rig * p).z() / camera.focal_x;
+        double& sigma = sigma_mm[s.marker];
+        sigma = std::max(sigma,
+                         std::hypot(mm_per_px * sighting_sigma_px(s.seen), predicted_error(fit.uncertainty, p).rms_mm));
+    }
+    for (const auto& [marker, sigma] : sigma_mm) {
+        const double off_mm = deviation_mm(rig, markers, aside, marker, fit.rig_from_patient);
+        if (off_mm > 3 * sigma)
+            result.doubts.push_back({marker, off_mm});
+        else
+            result.in_place_again.push_back(marker);
+    }
+}
+
 }  // namespace
 
 double sighting_sigma_px(const MarkerObservation& seen) {
@@ -224,8 +253,13 @@ std::optional<PoseFit> fit_pose(const RigCalibration& rig, const std::vector<Pat
 
 CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
                              std::vector<Sighting> sightings, const RigidTransform& start,
-                             const TrackingSettings& settings, const std::vector<Eigen::Vector3d>& places_in_patient) {
+                             const TrackingSettings& settings, const std::vector<Eigen::Vector3d>& places_in_patient,
+                             const std::vector<int>& set_aside) {
     CheckedPose result;
+    std::vector<Sighting> aside;
+    std::ranges::copy_if(sightings, std::back_inserter(aside),
+                         [&](const Sighting& s) { return std::ranges::find(set_aside, s.marker) != set_aside.end(); });
+    for (const Sighting& s : aside) sightings = without(sightings, s.marker);
     const auto refused = [&result](std::string reason) {
         result.reason = std::move(reason);
         return result;
@@ -236,7 +270,8 @@ CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<Patien
         const int seen = distinct_markers(sightings);
         if (seen < settings.min_markers)
             return refused(fmt::format("only {} of {} markers seen{}; {} are needed", seen, all,
-                                       result.doubts.empty() ? "" : " in their place", settings.min_markers));
+                                       result.doubts.empty() && aside.empty() ? "" : " in their place",
+                                       settings.min_markers));
         if (sightings.size() < 4)
             return refused(fmt::format("{} markers, each seen by one camera only: nothing to check the pose by", seen));
         auto fit = fit_pose(rig, markers, sightings, start);
@@ -244,7 +279,8 @@ CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<Patien
         const double chi = reduced_chi_square(*fit, sightings.size());
         if (chi >= kAgreement) {
             std::vector<LeftOut> fits;
-            if (seen > settings.min_markers) fits = leave_one_out(rig, markers, sightings, fit->rig_from_patient);
+            if (seen > settings.min_markers)
+                fits = leave_one_out(rig, markers, sightings, {fit->rig_from_patient, start});
             if (fits.empty() || !fits[0].fit)
                 return refused(
                     fmt::format("the {} markers seen do not agree, and so few cannot tell which of them has "
@@ -255,8 +291,9 @@ CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<Patien
                     return refused(fmt::format("a marker has moved, but it cannot be told whether {} or {}",
                                                found->marker + 1, found->rival + 1));
                 rivals_apart_mm += found->apart_mm;
-                result.doubts.push_back(
-                    {found->marker, deviation_mm(rig, markers, sightings, found->marker, found->pose)});
+                result.doubts.push_back({found->marker,
+                                         deviation_mm(rig, markers, sightings, found->marker, found->pose),
+                                         found->rival < 0});
                 sightings = without(sightings, found->marker);
                 continue;
             }
@@ -271,6 +308,14 @@ CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<Patien
         fit->bound_95_mm = largest.bound_95_mm + rivals_apart_mm;
         if (!(fit->error_mm <= settings.max_predicted_error_mm))
             return refused(too_uncertain(markers, sightings, fit->error_mm, settings.max_predicted_error_mm));
+        const double noticed = kAgreement * std::max(1.0, 2.0 * static_cast<double>(sightings.size()) - 6);
+        fit->external_reliability_mm = external_reliability_mm(rig, markers, sightings, fit->rig_from_patient,
+                                                               places_in_patient, kSlip_mm, noticed);
+        if (!places_in_patient.empty() && !(fit->external_reliability_mm <= settings.max_external_reliability_mm))
+            return refused(
+                "so few markers are seen that a slip of one would not show, and the plan could lie far off: uncover "
+                "another, or paste one and scan again");
+        look_at_set_aside(rig, markers, aside, *fit, result);
         result.fit = fit;
         result.used = sightings;
         return result;

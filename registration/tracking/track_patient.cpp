@@ -49,6 +49,14 @@ std::vector<Sighting> one_disc_one_marker(std::vector<std::pair<double, Sighting
     return sightings;
 }
 
+bool doubted(const CheckedPose& checked, int marker) {
+    return std::ranges::any_of(checked.doubts, [&](const MarkerDoubt& d) { return d.marker == marker; });
+}
+
+bool back_in_place(const CheckedPose& checked, int marker) {
+    return std::ranges::find(checked.in_place_again, marker) != checked.in_place_again.end();
+}
+
 }  // namespace
 
 /// A way to the pose of one frame, and all discs seen on it.
@@ -97,6 +105,7 @@ void PatientTracker::set_reference(std::vector<PatientMarker> markers) {
     seen_left_.clear();
     seen_right_.clear();
     doubts_.clear();
+    standing_.assign(markers_.size(), {});
     radius_left_px_.assign(markers_.size(), 0);
     radius_right_px_.assign(markers_.size(), 0);
     last_.reset();
@@ -150,7 +159,7 @@ PatientTracker::Attempt PatientTracker::follow(const StereoFrame& frame) {
             (is_left ? attempt.left : attempt.right).push_back({s.seen, s.marker});
         }
     }
-    attempt.checked = fit_pose_checked(rig_, markers_, sightings, expected, settings_, places_);
+    attempt.checked = fit_pose_checked(rig_, markers_, sightings, expected, settings_, places_, set_aside());
     if (attempt.checked.fit) look_again(frame, attempt);
     return attempt;
 }
@@ -165,9 +174,8 @@ void PatientTracker::look_again(const StereoFrame& frame, Attempt& attempt) cons
         const RigidTransform pose = attempt.checked.fit->rig_from_patient;
         const auto known = [&](int marker, bool left) {
             const auto same = [&](const Sighting& s) { return s.marker == marker && s.left == left; };
-            const auto doubted = [&](const MarkerDoubt& d) { return d.marker == marker; };
-            return std::any_of(sightings.begin(), sightings.end(), same) ||
-                   std::any_of(attempt.checked.doubts.begin(), attempt.checked.doubts.end(), doubted);
+            return std::any_of(sightings.begin(), sightings.end(), same) || doubted(attempt.checked, marker) ||
+                   back_in_place(attempt.checked, marker);
         };
         std::vector<Sighting> more;
         for (const bool is_left : {true, false}) {
@@ -189,9 +197,12 @@ void PatientTracker::look_again(const StereoFrame& frame, Attempt& attempt) cons
         }
         if (more.empty()) return;
         sightings.insert(sightings.end(), more.begin(), more.end());
-        CheckedPose better = fit_pose_checked(rig_, markers_, sightings, pose, settings_, places_);
+        CheckedPose better = fit_pose_checked(rig_, markers_, sightings, pose, settings_, places_, set_aside());
         if (!better.fit || better.used.size() <= attempt.checked.used.size()) return;
-        better.doubts.insert(better.doubts.end(), attempt.checked.doubts.begin(), attempt.checked.doubts.end());
+        for (const MarkerDoubt& d : attempt.checked.doubts)
+            if (!doubted(better, d.marker)) better.doubts.push_back(d);
+        better.in_place_again.insert(better.in_place_again.end(), attempt.checked.in_place_again.begin(),
+                                     attempt.checked.in_place_again.end());
         attempt.checked = std::move(better);
         for (const Sighting& s : more) (s.left ? attempt.left : attempt.right).push_back({s.seen, s.marker});
     }
@@ -214,8 +225,12 @@ PatientTracker::Attempt PatientTracker::search(const StereoFrame& frame) {
     attempt.checked.reason = match.reason;
     if (match.rig_from_patient)
         attempt.checked =
-            fit_pose_checked(rig_, markers_, match.sightings, *match.rig_from_patient, settings_, places_);
-    if (attempt.checked.fit && distinct_markers(attempt.checked.used) < match.needed) {
+            fit_pose_checked(rig_, markers_, match.sightings, *match.rig_from_patient, settings_, places_, set_aside());
+    // A marker that is known to have slipped still shows the arrangement.
+    const std::vector<int> aside = set_aside();
+    const auto slipped = std::ranges::count_if(
+        aside, [&](int marker) { return doubted(attempt.checked, marker) || back_in_place(attempt.checked, marker); });
+    if (attempt.checked.fit && distinct_markers(attempt.checked.used) + slipped < match.needed) {
         attempt.checked.fit.reset();
         attempt.checked.reason = "the discs seen are not in the arrangement of the markers";
     }
@@ -233,6 +248,27 @@ void PatientTracker::note_seen(const Attempt& attempt) {
     doubts_ = attempt.checked.doubts;
     for (const Sighting& s : attempt.checked.used)
         (s.left ? radius_left_px_ : radius_right_px_)[static_cast<std::size_t>(s.marker)] = s.seen.radius_px;
+}
+
+void PatientTracker::note_moved(const Attempt& attempt) {
+    const CheckedPose& checked = attempt.checked;
+    for (const MarkerDoubt& doubt : checked.doubts) {
+        Standing& of = standing_[static_cast<std::size_t>(doubt.marker)];
+        of.in_place = 0;
+        if (doubt.certain && ++of.moved >= settings_.set_aside_after) of.aside = true;
+    }
+    for (const Sighting& s : checked.used) standing_[static_cast<std::size_t>(s.marker)].moved = 0;
+    for (const int marker : checked.in_place_again) {
+        Standing& of = standing_[static_cast<std::size_t>(marker)];
+        if (++of.in_place >= settings_.set_aside_after) of = {};
+    }
+}
+
+std::vector<int> PatientTracker::set_aside() const {
+    std::vector<int> markers;
+    for (std::size_t k = 0; k < standing_.size(); ++k)
+        if (standing_[k].aside) markers.push_back(static_cast<int>(k));
+    return markers;
 }
 
 TrackedPose PatientTracker::update(const StereoFrame& frame) {
@@ -263,12 +299,14 @@ TrackedPose PatientTracker::update(const StereoFrame& frame) {
         before_last_.reset();
         return pose;
     }
+    note_moved(attempt);
     const PoseFit& fit = *attempt.checked.fit;
     pose.rig_from_patient = last_known_ = fit.rig_from_patient;
     uncertainty_ = fit.uncertainty;
     pose.residual_px = fit.residual_px;
     pose.predicted_error_mm = fit.error_mm;
     pose.bound_95_mm = fit.bound_95_mm;
+    pose.external_reliability_mm = fit.external_reliability_mm;
     for (const Sighting& s : attempt.checked.used) ++(s.left ? pose.markers_left : pose.markers_right);
     followed_by_one_ = pose.markers_left == 0 || pose.markers_right == 0 ? followed_by_one_ + 1 : 0;
     before_last_ = followed ? last_ : std::nullopt;

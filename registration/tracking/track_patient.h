@@ -15,17 +15,20 @@ namespace planlight {
 struct TrackingSettings {
     MarkerSettings markers;
     MarkerDesign design;
-    int min_markers = 3;                ///< seen by both cameras together; fewer give no pose
-    double max_residual_px = 0.5;       ///< rms above which there is no pose
-    double max_epipolar_px = 1.5;       ///< when the markers of both pictures are paired
-    double search_px = 40;              ///< around the predicted place
-    double max_predicted_error_mm = 1;  ///< one sigma, the largest where it counts, above which there is no pose
+    int min_markers = 3;                      ///< seen by both cameras together; fewer give no pose
+    double max_residual_px = 0.5;             ///< rms above which there is no pose
+    double max_epipolar_px = 1.5;             ///< when the markers of both pictures are paired
+    double search_px = 40;                    ///< around the predicted place
+    double max_predicted_error_mm = 1;        ///< one sigma, the largest where it counts, above which there is no pose
+    double max_external_reliability_mm = 10;  ///< of a slip of 1 mm (`external_reliability_mm`); above it, no pose
+    int set_aside_after = 5;  ///< poses running without a marker that has moved; as many in its place take it back
 };
 
 /// A marker that does not stand where it stood against the others: it slipped, or something else was taken for it.
 struct MarkerDoubt {
     int marker = -1;          ///< index into the reference markers
     double deviation_mm = 0;  ///< from where the others say it is, across the line of sight
+    bool certain = true;      ///< no other marker explains the disagreement as well
 };
 
 /// A marker in the patient frame, as measured at the scan instant.
@@ -52,7 +55,9 @@ public:
     void set_places(const std::vector<Eigen::Vector3d>& places_in_patient);
 
     /// The pose in this frame, by minimising the reprojection in both pictures at once. A lost marker is survived; too
-    /// few give no pose, and the next frame is searched whole.
+    /// few give no pose, and the next frame is searched whole. A marker that has moved against the others is set aside
+    /// once they have told so for some poses, and stays so until they tell that it stands in its place again: among the
+    /// few that are left when a hand covers the others it would not show any more.
     TrackedPose update(const StereoFrame& frame);
 
     const std::vector<PatientMarker>& markers() const { return markers_; }
@@ -79,6 +84,8 @@ private:
     RigidTransform predicted_pose(Instant at) const;
     Eigen::Vector3d centroid() const;
     void note_seen(const Attempt& attempt);
+    void note_moved(const Attempt& attempt);
+    std::vector<int> set_aside() const;
 
     RigCalibration rig_;
     TrackingSettings settings_;
@@ -87,6 +94,12 @@ private:
     std::optional<PoseUncertainty> uncertainty_;
     std::vector<Seen> seen_left_, seen_right_;
     std::vector<MarkerDoubt> doubts_;
+    /// Per marker, poses running: that it has moved, and since it was set aside that it stands in its place.
+    struct Standing {
+        int moved = 0, in_place = 0;
+        bool aside = false;
+    };
+    std::vector<Standing> standing_;
     std::vector<double> radius_left_px_, radius_right_px_;  ///< per marker, as last seen; 0 when never
     std::optional<TrackedPose> last_, before_last_;
     int followed_by_one_ = 0;  ///< frames since both cameras were last searched whole for want of one of them

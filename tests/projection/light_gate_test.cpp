@@ -57,6 +57,26 @@ TEST(LightGate, OfTooFewStretchesItSaysThatTheyAreTooFew) {
     EXPECT_EQ(after(gate, now, 3, seen_at(0.1, 1, 2)).headline, "LOOK: the cameras do not see the light.");
 }
 
+/// Three markers that cannot tell a slip: the light may be right, but nobody could see it go wrong.
+TEST(LightGate, WhereASlipOfAMarkerWouldNotShowItIsNotGreen) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    const auto step = [&](double unnoticed_mm) { return gate.step(now += 40ms, true, seen_at(0.1), {}, unnoticed_mm); };
+    for (int k = 0; k < 5; ++k) step(2.9);
+    EXPECT_EQ(step(2.9).trust, LightTrust::aligned);
+    EXPECT_EQ(step(5.2).trust, LightTrust::aligned) << "once: a hand that passes";
+    const auto ruling = step(5.2);
+    EXPECT_EQ(ruling.trust, LightTrust::look);
+    EXPECT_EQ(ruling.headline, "LOOK: so few markers are seen that a slip would not show.");
+    EXPECT_EQ(ruling.details.front(),
+              "Were one of them pushed aside by 1 mm, the plan could lie 5 mm off without a sign.");
+    EXPECT_FALSE(ruling.found_wrong);
+    for (int k = 0; k < 20; ++k) EXPECT_EQ(step(0.5).trust, LightTrust::look) << "for a second, against flicker";
+    for (int k = 0; k < 8; ++k) step(0.5);
+    EXPECT_EQ(step(0.5).trust, LightTrust::aligned);
+}
+
 TEST(LightGate, IsNeverGreenBeforeAPersonHasLooked) {
     LightGate gate;
     Instant now{};

@@ -5,8 +5,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "marker_scene.h"
+#include "registration/tracking/external_reliability.h"
 #include "registration/tracking/largest_error.h"
 
 namespace planlight::test {
@@ -52,8 +54,10 @@ struct Trial {
             }
     }
 
-    CheckedPose checked(const std::vector<Vector3d>& places_in_patient = {}) const {
-        return fit_pose_checked(paper_rig(), markers, sightings, RigidTransform::Identity(), {}, places_in_patient);
+    CheckedPose checked(const std::vector<Vector3d>& places_in_patient = {},
+                        const TrackingSettings& settings = {}) const {
+        return fit_pose_checked(paper_rig(), markers, sightings, RigidTransform::Identity(), settings,
+                                places_in_patient);
     }
     double off_mm(const CheckedPose& pose, const Vector3d& p) const {
         return (pose.fit->rig_from_patient * p - truth * p).norm();
@@ -95,13 +99,15 @@ TEST(FitPoseChecked, MarkersNearlyInOneLineGiveNoPose) {
 // wrong by is part of the bound and not of these frames, so that more may lie within.
 TEST(FitPoseChecked, TheStatedBoundHoldsAtThePlan) {
     std::mt19937 random(2);
+    TrackingSettings whatever_may_slip;
+    whatever_may_slip.max_external_reliability_mm = std::numeric_limits<double>::infinity();
     for (const auto& places : {wide_triangle(), line(60, 6, 3), line(60, 12, 3), line(90, 5, 4)}) {
         int within = 0, within_all_round = 0;
         double at_the_plan_mm = 0, at_the_middle_mm = 0;
         constexpr int kTrials = 400;
         for (int k = 0; k < kTrials; ++k) {
             const Trial trial(places, random);
-            const CheckedPose told = trial.checked({kPlan}), untold = trial.checked();
+            const CheckedPose told = trial.checked({kPlan}, whatever_may_slip), untold = trial.checked();
             ASSERT_TRUE(told.fit) << told.reason;
             ASSERT_TRUE(untold.fit) << untold.reason;
             within += trial.off_mm(told, kPlan) <= told.fit->bound_95_mm;
@@ -115,6 +121,68 @@ TEST(FitPoseChecked, TheStatedBoundHoldsAtThePlan) {
         EXPECT_GT(at_the_plan_mm, 2 * at_the_middle_mm);
         EXPECT_LT(at_the_plan_mm, 2);
     }
+}
+
+/// The farthest that `draws` slips of one marker by up to 1 mm move the pose at the plan without sightings that
+/// disagree.
+double farthest_unnoticed_mm(const Trial& still, double noticed_chi_square, int draws, std::mt19937& random) {
+    const RigCalibration rig = paper_rig();
+    const auto before = fit_pose(rig, still.markers, still.sightings, still.truth);
+    double farthest = 0;
+    for (int k = 0; k < draws; ++k) {
+        std::vector<Sighting> sightings = still.sightings;
+        const int marker = k % static_cast<int>(still.markers.size());
+        const Vector3d place = still.truth * still.markers[static_cast<std::size_t>(marker)].centre_in_patient;
+        const Vector3d slip =
+            std::uniform_real_distribution<double>(0.5, 1)(random) * drawn_vector(random).normalized();
+        for (Sighting& s : sightings)
+            if (s.marker == marker) {
+                const CameraModel& camera = s.left ? rig.left_camera : rig.right_camera;
+                s.seen.pixel += seen_at(camera, place + slip) - seen_at(camera, place);
+            }
+        const auto after = fit_pose(rig, still.markers, sightings, still.truth);
+        if (!before || !after || after->chi_square > noticed_chi_square) continue;
+        farthest = std::max(farthest, (after->rig_from_patient * kPlan - before->rig_from_patient * kPlan).norm());
+    }
+    return farthest;
+}
+
+// By slips that are tried: none moves the plan farther than is said, and the farthest not much less.
+TEST(ExternalReliability, IsHowFarASlipMovesThePlanBeforeItShows) {
+    std::mt19937 random(4);
+    auto square = wide_triangle();
+    square.emplace_back(35, 40, 899);
+    for (const auto& places : {wide_triangle(), line(60, 12, 3), square, line(90, 8, 4)}) {
+        const Trial trial(places, random);
+        const double noticed = 3.5 * (4. * static_cast<double>(places.size()) - 6);
+        const double said_mm =
+            external_reliability_mm(paper_rig(), trial.markers, trial.sightings, trial.truth, {kPlan}, 1, noticed);
+        const double tried_mm = farthest_unnoticed_mm(trial, noticed, 4000, random);
+        EXPECT_LT(tried_mm, 1.1 * said_mm) << places.size();  // (to first order)
+        EXPECT_GT(tried_mm, 0.5 * said_mm) << places.size();
+    }
+}
+
+TEST(ExternalReliability, IsInfiniteWhereNothingIsDetermined) {
+    std::mt19937 random(5);
+    Trial trial(wide_triangle(), random);
+    trial.sightings.resize(2);
+    EXPECT_TRUE(
+        std::isinf(external_reliability_mm(paper_rig(), trial.markers, trial.sightings, trial.truth, {kPlan}, 1, 10)));
+}
+
+// The middle marker lies 8 mm beside the line of the others: a millimetre of it is more than ten at the plan.
+TEST(FitPoseChecked, WhereASlipWouldNotShowAndMoveThePlanFarThereIsNoPose) {
+    std::mt19937 random(6);
+    int given = 0;
+    for (int k = 0; k < 40; ++k) {
+        const CheckedPose pose = Trial(line(80, 8.5, 3), random).checked({kPlan});
+        EXPECT_FALSE(pose.fit);
+        EXPECT_TRUE(pose.reason.starts_with("so few markers are seen that a slip of one would not show"))
+            << pose.reason;
+        given += Trial(wide_triangle(), random).checked({kPlan}).fit.has_value();
+    }
+    EXPECT_EQ(given, 40);
 }
 
 // Three in a line and one below: whether the end of the line slipped across it or the lower one moved cannot be told,

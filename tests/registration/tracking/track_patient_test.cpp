@@ -269,6 +269,43 @@ TEST(PatientTracker, GivesNoPoseWhenOneOfThreeMarkersSlipped) {
     EXPECT_FALSE(pose.reason.empty());
 }
 
+// A hand then covers half of the markers: among three the slipped one would pass, or spoil the pose.
+TEST(PatientTracker, AMarkerThatSlippedIsNotTrustedWhenFewAreLeft) {
+    Tracked t(paper_rig());
+    auto stickers = stickers_in_rig();
+    const Eigen::Vector3d home = stickers[0].centre;
+    stickers[0].centre += 0.5 * stickers[0].normal.unitOrthogonal();
+    for (int k = 0; k < 6; ++k) ASSERT_TRUE(t.see(stickers).rig_from_patient);
+    ASSERT_EQ(t.tracker.doubts().size(), 1u);
+    EXPECT_EQ(t.tracker.doubts()[0].marker, t.marker_of(0));
+    auto few = stickers;
+    for (const std::size_t k : {1u, 3u, 4u}) few[k].covered = true;
+    const TrackedPose pose = t.see(few);
+    EXPECT_FALSE(pose.rig_from_patient);
+    EXPECT_EQ(pose.reason, "only 2 of 6 markers seen in their place; 3 are needed");
+    few[1].covered = false;
+    ASSERT_TRUE(t.see(few).rig_from_patient) << "three others";
+    EXPECT_EQ(t.tracker.doubts().size(), 1u);
+
+    stickers[0].centre = home;
+    for (int k = 0; k < 6; ++k) ASSERT_TRUE(t.see(stickers).rig_from_patient);
+    EXPECT_TRUE(t.tracker.doubts().empty()) << "it was put back, and the others say so";
+    few = stickers;
+    for (const std::size_t k : {1u, 3u, 4u}) few[k].covered = true;
+    EXPECT_TRUE(t.see(few).rig_from_patient);
+}
+
+// What covers a part of a disc for a moment is no slip.
+TEST(PatientTracker, AMarkerDoubtedForAMomentIsUsedAgainAtOnce) {
+    Tracked t(paper_rig());
+    auto stickers = stickers_in_rig();
+    stickers[0].centre += stickers[0].normal.unitOrthogonal();
+    for (int k = 0; k < 3; ++k) ASSERT_TRUE(t.see(stickers).rig_from_patient);
+    const TrackedPose pose = t.see(stickers_in_rig());
+    EXPECT_EQ(pose.markers_left, 6);
+    EXPECT_TRUE(t.tracker.doubts().empty());
+}
+
 // At the markers' middle a pose is surest, at a plan far from them the turn counts; a new reference is another frame.
 TEST(PatientTracker, StatesItsErrorWhereThePlanIs) {
     Tracked t(paper_rig());
