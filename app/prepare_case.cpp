@@ -36,16 +36,21 @@ double timed(const std::string& name, const PreparationWatcher& watcher,
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 }
 
-/// Refuses a plan that does not fit. What is doubtful about the skin comes first: it may be the one to be mistrusted.
+/// Refuses a plan that does not fit. What is doubtful about the skin comes first, as it may be the one to be
+/// mistrusted; not where the plan lies outside the volume, and not that the volume ends.
 void refuse_misfit(const PlanVerdict& of_plan, const SkinJudgement& skin) {
     try {
         refuse_stopped_plan(of_plan);
     } catch (const InputError& error) {
-        if (skin.doubts.empty()) throw;
-        std::string doubts;
-        for (const SkinDoubt& doubt : skin.doubts) doubts += (doubts.empty() ? "" : "; ") + doubt.finding;
+        std::string doubts, remedy;
+        for (const SkinDoubt& doubt : skin.doubts) {
+            if (doubt.of_the_end) continue;
+            if (doubts.empty()) remedy = doubt.remedy;
+            doubts += (doubts.empty() ? "" : "; ") + doubt.finding;
+        }
+        if (doubts.empty() || of_plan.outside_volume) throw;
         throw InputError({}, "The skin itself is doubtful, mistrust it first (" + doubts + "). " + error.what(),
-                         skin.doubts.front().remedy + " " + error.remedy);
+                         remedy + " " + error.remedy);
     }
 }
 

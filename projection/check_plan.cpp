@@ -117,9 +117,11 @@ private:
                 if (beyond > out_mm) out_mm = beyond, worst = p;
             }
         }
-        if (out_mm > settings_.outside_volume_mm)
+        if (out_mm > settings_.outside_volume_mm) {
+            verdict_.outside_volume = true;
             stop(name, "its point ({:.0f}, {:.0f}, {:.0f}) lies {:.0f} mm outside the volume", worst.x(), worst.y(),
                  worst.z(), out_mm);
+        }
     }
 
     /// How far a point lies outside the box of voxel centres, mm; 0 within.
@@ -140,9 +142,10 @@ private:
             return outside_mm(p) > settings_.outside_volume_mm;
         }));
         const double share = out / static_cast<double>(points.size());
-        if (share > settings_.structure_cut)
+        if (share > settings_.structure_cut) {
+            verdict_.outside_volume = true;
             stop(name, "{:.0f} % of the risk structure lies outside the volume", 100 * share);
-        else if (share > 0)
+        } else if (share > 0)
             verdict_.warnings.push_back(name + ": a part of the risk structure lies outside the volume");
     }
 

@@ -43,6 +43,7 @@ struct PlanVerdict {
     std::vector<std::string>
         stops;  ///< the plan must not be shown: one sentence each, with the item's name and the numbers
     std::vector<std::string> warnings;  ///< one sentence each, with the item's name
+    bool outside_volume = false;        ///< a stop is that something lies outside the volume, wherever the skin is
     double median_to_skin_mm = 0;       ///< of entries, boreholes and lines' points
     double share_far = 0;               ///< of the items, farther than `near_skin_mm`
 };

@@ -134,8 +134,19 @@ struct OtherwiseThanHeader {
     double nose_mm = 0;
 };
 
-/// By the half turn after which a nose is in front. A mirror image of a head looks the same as some half turn of it.
-OtherwiseThanHeader nose_elsewhere(const TriangleMesh& skin, const HeadBall& ball) {
+/// Whether the volume's end cuts more off above than below, as it does where a neck points up.
+bool neck_may_be_above(const std::vector<CutSide>& ends) {
+    double above_cm2 = 0, below_cm2 = 0;
+    for (const CutSide& end : ends) {
+        if (end.name == "crown") above_cm2 += end.area_cm2;
+        if (end.name == "neck" || end.name == "chin") below_cm2 += end.area_cm2;
+    }
+    return below_cm2 == 0 || above_cm2 > below_cm2;
+}
+
+/// By the half turn after which a nose is in front. A mirror image of a head looks the same as some half turn of it. A
+/// cushion or a mask may stand out as a nose does: upside down is no head whose neck is cut off below.
+OtherwiseThanHeader nose_elsewhere(const TriangleMesh& skin, const HeadBall& ball, const std::vector<CutSide>& ends) {
     const std::pair<Eigen::Vector3d, const char*> turns[] = {
         {{-1, -1, 1}, "the head looks to the back"},
         {{1, -1, -1}, "the head is upside down and looks to the back"},
@@ -143,6 +154,7 @@ OtherwiseThanHeader nose_elsewhere(const TriangleMesh& skin, const HeadBall& bal
     OtherwiseThanHeader found;
     double best_mm = kSureNose_mm * std::min(1.0, ball.radius_mm / 72);
     for (const auto& [signs, words] : turns) {
+        if (signs.z() < 0 && !neck_may_be_above(ends)) continue;
         TriangleMesh turned = skin;
         for (auto& p : turned.vertices_in_ct) p = ball.centre_in_ct + signs.cwiseProduct(p - ball.centre_in_ct);
         const double nose_mm = nose_length_mm(turned, ball, {ball.centre_in_ct});
@@ -153,7 +165,7 @@ OtherwiseThanHeader nose_elsewhere(const TriangleMesh& skin, const HeadBall& bal
 
 void judge_face(const TriangleMesh& skin, const HeadBall& ball, SkinJudgement& r) {
     if (!(r.nose_mm < nose_due_mm(r))) return;
-    if (const OtherwiseThanHeader found = nose_elsewhere(skin, ball); !found.words.empty())
+    if (const OtherwiseThanHeader found = nose_elsewhere(skin, ball, r.cut_sides); !found.words.empty())
         return add(
             r.doubts,
             fmt::format("By its header {}, where a nose stands out by {:.0f} mm: the header does not say how the "

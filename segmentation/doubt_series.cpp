@@ -58,12 +58,12 @@ void judge_fat_shift(const Volume& volume, SkinJudgement& r) {
 }
 
 void judge_steps(const Volume& volume, SkinJudgement& r) {
-    const double step_mm = volume.spacing_mm().maxCoeff();
+    const double step_mm = std::max(volume.spacing_mm().maxCoeff(), volume.widest_gap_mm);
     if (step_mm < kThick_mm) return;
     r.sigma_mm = std::max(r.sigma_mm, step_mm / 6);
     add(r.doubts,
-        fmt::format("The slices lie {:.1f} mm apart: between them the skin is guessed, and uncertain by {:.1f} mm",
-                    step_mm, r.sigma_mm),
+        fmt::format("The slices lie {}{:.1f} mm apart: between them the skin is guessed, and uncertain by {:.1f} mm",
+                    volume.widest_gap_mm > 0 ? "up to " : "", step_mm, r.sigma_mm),
         "Use a series of thinner slices if there is one.");
 }
 

@@ -123,9 +123,10 @@ void doubt_ends(SkinJudgement& r) {
                             "nor round it: something lies on the head there (a cushion, wet hair, a blanket)",
                             "the " + side.name, side.boneless_cm2),
                 kLookAtTheSkin);
-    if (count > 0)
-        add(r.doubts, fmt::format("The volume ends within the head: it cuts off {}; what lies there is no skin", sides),
-            "Scan, match and draw elsewhere, or give a series that shows the whole head.");
+    if (count == 0) return;
+    add(r.doubts, fmt::format("The volume ends within the head: it cuts off {}; what lies there is no skin", sides),
+        "Scan, match and draw elsewhere, or give a series that shows the whole head.");
+    r.doubts.back().of_the_end = true;
 }
 
 }  // namespace planlight

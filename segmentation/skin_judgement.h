@@ -13,8 +13,9 @@ namespace planlight {
 
 /// A finding that a person must hear, with its figure and what to do.
 struct SkinDoubt {
-    std::string finding;  ///< one sentence
-    std::string remedy;   ///< one sentence in the imperative
+    std::string finding;      ///< one sentence
+    std::string remedy;       ///< one sentence in the imperative
+    bool of_the_end = false;  ///< only that the volume ends there: the skin that it shows is not doubted
 };
 
 /// Whether a skin is that of a head, and how it was asked. Lengths mm; a figure that could not be taken is not a

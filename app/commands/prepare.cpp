@@ -175,9 +175,11 @@ int run_prepare(const PrepareOptions& options) {
     const bool in_the_case = !options.pdf.empty() && stands_in(options.pdf, options.out);  // and so a file of its own
     write_case(done.prepared, options.out, options.replace, [&](const Path& into) {
         write_preparation_report(report, into);
-        if (in_the_case) write_pdf(report.document, into / options.pdf.filename());
+        if (in_the_case)
+            write_pdf(report.document, into / options.pdf.filename());
+        else
+            write_pdf(report.document, options.pdf, ReadableBy::owner);  // with the face and the name
     });
-    if (!in_the_case) write_pdf(report.document, options.pdf, ReadableBy::owner);  // with the face and the name
     bar.show("case folder", 1);
     if (options.json)
         std::cout << report.json;

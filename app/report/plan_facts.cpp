@@ -143,8 +143,8 @@ std::string risk_html(const Clearances& clearances) {
 std::string distance_in_words(double mm, const DrawingSettings& settings) {
     if (!std::isfinite(mm)) return "not known";
     if (mm <= kOnSkin_mm) return "on the skin";
-    if (gravity_of(mm, settings) == Gravity::stop) return fmt::format("{:.0f} mm off the skin: not drawn", mm);
-    if (mm > settings.max_distance_to_skin_mm) return fmt::format("{:.0f} mm off the skin: far; drawn on the skin", mm);
+    if (gravity_of(mm, settings) == Gravity::stop) return fmt::format("{:.1f} mm off the skin: not drawn", mm);
+    if (mm > settings.max_distance_to_skin_mm) return fmt::format("{:.1f} mm off the skin: far; drawn on the skin", mm);
     if (mm > kLook_mm) return fmt::format("{:.1f} mm off the skin; drawn on the skin", mm);
     return fmt::format("{:.1f} mm off the skin", mm);
 }

@@ -34,13 +34,20 @@ Vector3d middle_of(const TriangleMesh& skin) {
     return (low + high) / 2;
 }
 
-std::string place_of(SliceKind kind, const Vector3d& p) {
-    if (kind == SliceKind::axial) return fmt::format("{} {:.1f} mm", p.z() < 0 ? "I" : "S", std::abs(p.z()));
-    if (kind == SliceKind::coronal) return fmt::format("{} {:.1f} mm", p.y() < 0 ? "A" : "P", std::abs(p.y()));
-    return fmt::format("{} {:.1f} mm", p.x() < 0 ? "R" : "L", std::abs(p.x()));
+/// Where a slice lies, from the middle of the skin: a volume's own zero may lie at its corner, and would tell a wrong
+/// side.
+std::string place_of(SliceKind kind, const Vector3d& from_middle) {
+    const auto said = [](double mm, const char* minus, const char* plus) {
+        return std::abs(mm) < 0.5 ? std::string("through the middle")
+                                  : fmt::format("{:.0f} mm {} the middle", std::abs(mm), mm < 0 ? minus : plus);
+    };
+    if (kind == SliceKind::axial) return said(from_middle.z(), "below", "above");
+    if (kind == SliceKind::coronal) return said(from_middle.y(), "before", "behind");
+    return said(from_middle.x(), "right of", "left of");
 }
 
 std::vector<ReportPicture> slices_at(const Volume& volume, const Case& the_case, const Vector3d& at) {
+    const Vector3d middle = middle_of(the_case.skin);
     struct Kind {
         SliceKind kind;
         const char *name, *seen;
@@ -50,7 +57,7 @@ std::vector<ReportPicture> slices_at(const Volume& volume, const Case& the_case,
                                {SliceKind::sagittal, "Sagittal", "from the left"}};
     std::vector<ReportPicture> pictures;
     for (const auto& [kind, name, seen] : kKinds)
-        pictures.push_back({name, fmt::format("at {}, seen {}", place_of(kind, at), seen),
+        pictures.push_back({name, fmt::format("{}, seen {}", place_of(kind, at - middle), seen),
                             slice_picture(volume, the_case.skin, the_case.plan, kind, at)});
     return pictures;
 }
@@ -72,7 +79,8 @@ std::vector<ReportPicture> views_of(const Case& the_case, const PlanDrawing& dra
                                {"From the right", kQuarter, 0.15},
                                {"From behind", 2 * kQuarter, 0.15},
                                {"From the left", 3 * kQuarter, 0.15},
-                               {"From above", 0, 1.5}};
+                               {"From above", 0, 1.5},
+                               {"From below", 0, -1.5}};
     std::vector<SceneView> views;
     for (const auto& side : kSides) {
         views.emplace_back();

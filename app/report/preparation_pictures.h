@@ -14,7 +14,7 @@ struct PreparationPictures {
     std::vector<ReportPicture>
         middle_slices;                       ///< axial, coronal, sagittal: through the skin's middle, its line on them
     std::vector<ReportPicture> plan_slices;  ///< the same through `point_of_interest`; empty without a plan
-    std::vector<ReportPicture> views;        ///< the head with the plan from four sides and from above
+    std::vector<ReportPicture> views;        ///< the head with the plan from four sides, from above and from below
     std::string no_views;                    ///< why there are none: where there is no OpenGL
 };
 

@@ -88,6 +88,11 @@ std::string cut_sides_of(const SkinJudgement& skin) {
     return words;
 }
 
+/// A chin that is cut off shows its end from below alone.
+bool is_cut_below(const SkinJudgement& skin) {
+    return std::ranges::any_of(skin.cut_sides, [](const CutSide& side) { return side.name == "chin"; });
+}
+
 std::string series_of(const CaseNames& names) {
     if (names.series_date.empty()) return names.series;
     return names.series.empty() ? "of " + names.series_date : names.series + ", " + names.series_date;
@@ -190,10 +195,13 @@ void add_views(const Preparation& done, const PreparationPictures& pictures, con
                std::vector<DocumentBlock>& blocks) {
     const bool drawn = pictures.views.size() >= 4;
     blocks.push_back(DocumentHeading{"The skin with the plan, and what was thrown away"});
-    if (drawn)
-        blocks.push_back(figures_of({pictures.views.begin(), pictures.views.begin() + 4}, 4));
-    else
+    if (drawn) {
+        std::vector<ReportPicture> views(pictures.views.begin(), pictures.views.begin() + 4);
+        if (is_cut_below(done.judgement) && pictures.views.size() > 5) views.push_back(pictures.views[5]);
+        blocks.push_back(figures_of(views, static_cast<int>(views.size())));
+    } else {
         blocks.push_back(DocumentText{pictures.no_views, Tone::look});
+    }
     if (drawn && !done.prepared.plan.risk_structures.empty()) blocks.push_back(key_of_risks(done.prepared.plan));
     if (!cut_sides_of(done.judgement).empty())
         blocks.push_back(
@@ -313,7 +321,10 @@ PreparationReport preparation_report(const Preparation& done, const PlanDrawing&
     add_plan(facts, document.blocks);
     document.blocks.push_back(figures_in_words(done));
     document.signed_by = {"Prepared by", "Skin, plan and patient checked by"};
-    document.foot = fmt::format("{} · case {} · prepared {}", title_of(c), c.code, time_in_words(c.created));
+    const std::string title = title_of(c);
+    document.foot =
+        fmt::format("{}{} · prepared {}", title, title.find(c.code) == std::string::npos ? " · case " + c.code : "",
+                    time_in_words(c.created));
     return {std::move(document), preparation_json(done, drawing, facts, removed)};
 }
 

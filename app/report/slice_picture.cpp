@@ -150,7 +150,40 @@ void draw_near(const Vector3d& a, const Vector3d& b, const Sheet& sheet, cv::Mat
     }
 }
 
-void draw_plan_near(const Plan& plan, const Sheet& sheet, cv::Mat& canvas) {
+/// The mean normal of the skin round a place, outwards; zero without skin within 8 mm.
+Vector3d normal_near(const TriangleMesh& skin, const Vector3d& p_in_ct) {
+    constexpr double kNear_mm = 8;
+    Vector3d sum = Vector3d::Zero();
+    for (const auto& t : skin.triangles) {
+        const auto corner = [&](std::size_t k) { return skin.vertices_in_ct[static_cast<std::size_t>(t[k])]; };
+        const Vector3d a = corner(0), b = corner(1), c = corner(2);
+        if ((a - p_in_ct).squaredNorm() < kNear_mm * kNear_mm) sum += (b - a).cross(c - a);
+    }
+    return sum.norm() > 0 ? Vector3d(sum.normalized()) : Vector3d::Zero();
+}
+
+/// A hole as deep and as wide as it is planned, square to the skin where the plan gives no axis.
+void draw_hole_near(const Borehole& hole, const TriangleMesh& skin, const Sheet& sheet, cv::Mat& canvas) {
+    const Vector3d along = hole.axis_in_ct ? *hole.axis_in_ct : Vector3d(-normal_near(skin, hole.position_in_ct)),
+                   from = hole.position_in_ct, to = from + std::max(hole.depth_mm, 1.0) * along;
+    if (along.norm() == 0) return;
+    draw_near(from, to, sheet, canvas);
+    const Vector3d across = along.cross(sheet.frame.normal());
+    const Vector3d aside = across.norm() > 0.1 ? across.normalized() : along.unitOrthogonal();
+    const Vector3d radius = 0.5 * std::max(hole.diameter_mm, 2.0) * aside;
+    draw_near(from - radius, from + radius, sheet, canvas);
+}
+
+/// Where a line of a plane passes the slice: a dot.
+void draw_crossing(const Vector3d& a, const Vector3d& b, const Sheet& sheet, cv::Mat& canvas) {
+    const double above_a = sheet.above_mm(a), above_b = sheet.above_mm(b);
+    if (above_a * above_b > 0 || above_a == above_b) return;
+    const Vector2d at = sheet.pixel(a + above_a / (above_a - above_b) * (b - a));
+    cv::circle(canvas, {static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y()))}, 1, kPlanLine, -1,
+               cv::LINE_AA);
+}
+
+void draw_plan_near(const Plan& plan, const TriangleMesh& skin, const Sheet& sheet, cv::Mat& canvas) {
     for (const auto& t : plan.trajectories) {
         draw_near(t.entry_in_ct, t.target_in_ct, sheet, canvas);
         if (std::abs(sheet.above_mm(t.target_in_ct)) > sheet.settings.plan_within_mm) continue;
@@ -158,9 +191,18 @@ void draw_plan_near(const Plan& plan, const Sheet& sheet, cv::Mat& canvas) {
         cv::circle(canvas, {static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y()))}, 5, kPlanLine,
                    2, cv::LINE_AA);
     }
-    for (const auto& b : plan.boreholes)
-        if (b.axis_in_ct)
-            draw_near(b.position_in_ct, b.position_in_ct + std::max(b.depth_mm, 1.0) * *b.axis_in_ct, sheet, canvas);
+    for (const auto& b : plan.boreholes) draw_hole_near(b, skin, sheet, canvas);
+    for (const auto& plane : plan.cut_planes) {
+        const Vector3d u = 0.5 * plane.width_mm * plane.first_axis_in_ct,
+                       v = 0.5 * plane.height_mm * plane.normal_in_ct.cross(plane.first_axis_in_ct);
+        constexpr int kLines = 40;  // of the plane, each drawn where it comes near the slice
+        for (int k = -kLines; k <= kLines; ++k) {
+            const double share = static_cast<double>(k) / kLines;
+            const Vector3d along = plane.origin_in_ct + share * v, across = plane.origin_in_ct + share * u;
+            draw_crossing(along - u, along + u, sheet, canvas);
+            draw_crossing(across - v, across + v, sheet, canvas);
+        }
+    }
     for (const auto& line : plan.osteotomy_lines) {
         const std::size_t n = line.points_in_ct.size();
         for (std::size_t i = 0; i + (line.closed ? 0 : 1) < n; ++i)
@@ -185,7 +227,7 @@ RgbImage slice_picture(const Volume& volume, const TriangleMesh& skin, const Pla
     cv::Mat canvas(picture.height, picture.width, CV_8UC3, picture.pixels.data());
     draw_surface(skin, sheet, canvas, kSkinLine);
     for (const auto& structure : plan.risk_structures) draw_surface(structure.surface, sheet, canvas, kRiskLine);
-    draw_plan_near(plan, sheet, canvas);
+    draw_plan_near(plan, skin, sheet, canvas);
     constexpr int kEdge = 22;
     write_letter(canvas, sheet.frame.left_letter, kEdge, settings.height / 2);
     write_letter(canvas, sheet.frame.right_letter, settings.width - kEdge, settings.height / 2);

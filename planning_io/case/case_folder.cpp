@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "planning_io/case/skin_lut_file.h"
@@ -161,6 +162,17 @@ bool holds_case(const fs::path& folder) {
            read_whole(folder / kManifest).find(kFormat) != std::string::npos;
 }
 
+/// The files that a case's own checksums name (a report as PDF, say); none where these cannot be read.
+std::set<std::string> written_with_case(const fs::path& folder) {
+    std::set<std::string> names;
+    try {
+        if (fs::is_regular_file(folder / kChecksums))
+            for (const auto& [name, checksum] : read_checksums(folder / kChecksums)) names.insert(name);
+    } catch (const Error&) {  // what is not known to be ours is kept
+    }
+    return names;
+}
+
 /// Refuses to replace what cannot be made again: a session's matches, and files that are not the case's.
 void check_nothing_is_lost(const fs::path& folder) {
     for (const auto& [name, what] : {std::pair{kRegistrationsFolder, "matches that sessions kept"},
@@ -169,10 +181,11 @@ void check_nothing_is_lost(const fs::path& folder) {
             throw InputError(
                 folder, fmt::format("holds {} ({}), which would be lost with the case that is replaced", what, name),
                 "Move that folder away, or name another folder for the new case.");
+    const std::set<std::string> written = written_with_case(folder);
     std::string others;
     for (const auto& entry : fs::directory_iterator(folder)) {
         const std::string name = entry.path().filename().string();
-        if (is_ours(name) && entry.is_regular_file()) continue;
+        if ((is_ours(name) || written.contains(name)) && entry.is_regular_file()) continue;
         others += (others.empty() ? "" : ", ") + name;
     }
     if (!others.empty())

@@ -162,6 +162,7 @@ void lay_on_even_grid(Volume& volume, const std::vector<DicomSlice>& slices) {
     volume.values = std::move(laid);
     volume.ct_from_voxel.linear().col(2) = volume.ct_from_voxel.linear().col(2).normalized() * step;
     volume.size[2] = count;
+    volume.widest_gap_mm = *most;
     volume.notes.push_back(
         fmt::format("its {} slices lie {:.2f} to {:.2f} mm apart; they were laid onto an even grid of {} with steps of "
                     "{:.2f} mm, linear between the cuts: where they are far apart the skin is coarser",

@@ -23,6 +23,8 @@ struct Volume {
     /// Of an MR: how far fat is drawn aside of all else along the readout, mm (chemical shift); its sign is not told.
     /// Zero when not said.
     Eigen::Vector3d fat_shift_in_ct = Eigen::Vector3d::Zero();
+    /// The farthest that two slices lay apart before they were laid onto this grid, mm; 0: they lie as scanned.
+    double widest_gap_mm = 0;
     std::vector<std::string>
         notes;  ///< what was noticed and did not stop the reading, in words; never a name, id or path
 

@@ -118,6 +118,7 @@ std::pair<std::size_t, double> jump_in(const SliceRow& row) {
     std::pair<std::size_t, double> worst{0, 0};
     const double usual = median(row.apart);
     for (std::size_t k = kAround; k + kAround < row.apart.size(); ++k) {
+        if (row.plain[k] || row.plain[k + 1]) continue;  // a border of one value, which a program put there
         double most = kLeastOfUsual * usual;
         for (std::size_t d = 1; d <= kAround; ++d) most = std::max({most, row.apart[k - d], row.apart[k + d]});
         if (most > 0 && row.apart[k] >= usual && row.apart[k] / most > worst.second)

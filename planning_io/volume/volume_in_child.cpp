@@ -25,6 +25,7 @@ void put_volume(Parcel& parcel, const Volume& volume) {
          {volume.modality, volume.frame_of_reference_uid, volume.source, volume.series_description, volume.series_date})
         parcel.put(text);
     for (const double mm : volume.fat_shift_in_ct) parcel.put(mm);
+    parcel.put(volume.widest_gap_mm);
     parcel.put(static_cast<std::uint64_t>(volume.notes.size()));
     for (const auto& note : volume.notes) parcel.put(note);
     parcel.put(volume.values);
@@ -43,6 +44,7 @@ Volume get_volume(Parcel& parcel) {
     volume.series_description = parcel.get_text();
     volume.series_date = parcel.get_text();
     for (double& mm : volume.fat_shift_in_ct) mm = parcel.get<double>();
+    volume.widest_gap_mm = parcel.get<double>();
     const auto notes = parcel.get<std::uint64_t>();
     for (std::uint64_t n = 0; n < notes; ++n) {
         std::string note = parcel.get_text();

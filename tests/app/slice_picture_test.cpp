@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -90,6 +91,40 @@ TEST(SlicePicture, SkinLineLiesWhereThePlaneCutsTheMesh) {
             ++on_line;
         }
     EXPECT_GT(on_line, 2 * std::numbers::pi * 25 / mm_per_px) << "the whole circle is there";
+}
+
+/// Rows and columns of the picture that are pink, as the plan is: their number, mm.
+Eigen::Vector2d extent_of_plan(const RgbImage& picture, double mm_per_px) {
+    int left = picture.width, right = -1, top = picture.height, bottom = -1;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x)
+            if (picture.at(x, y) == Rgb{255, 92, 160}) {
+                left = std::min(left, x), right = std::max(right, x);
+                top = std::min(top, y), bottom = std::max(bottom, y);
+            }
+    return right < 0 ? Eigen::Vector2d::Zero()
+                     : Eigen::Vector2d(mm_per_px * Eigen::Vector2d(right - left, bottom - top));
+}
+
+TEST(SlicePicture, HolesWithoutAnAxisAndCutPlanesAreOnIt) {
+    TriangleMesh wall;  // skin that faces forwards, -y
+    wall.vertices_in_ct = {{-3, -20, -3}, {3, -20, -3}, {3, -20, 3}, {-3, -20, 3}};
+    wall.triangles = {{0, 1, 2}, {0, 2, 3}};
+    Plan holes;
+    holes.boreholes.push_back({"H", {0, -20, 0}, std::nullopt, 7, 12, std::nullopt});
+    const Volume volume = air_with_a_ball({0, 0, -45});
+    const double mm_per_px = 106.0 / slice_picture(volume, {}, {}, SliceKind::axial, {0, 0, 0}).width;
+    const auto hole = extent_of_plan(slice_picture(volume, wall, holes, SliceKind::axial, {0, 0, 0}), mm_per_px);
+    EXPECT_NEAR(hole.x(), 7, 0.6) << "as wide as it is planned";
+    EXPECT_NEAR(hole.y(), 12, 0.6) << "and as deep, square to the skin";
+    EXPECT_EQ(extent_of_plan(slice_picture(volume, wall, holes, SliceKind::axial, {0, 0, 20}), mm_per_px).norm(), 0);
+
+    Plan cut;
+    cut.cut_planes.push_back({"C", {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, 30, 20, std::nullopt});
+    const auto plane = extent_of_plan(slice_picture(volume, wall, cut, SliceKind::axial, {0, 0, 5}), mm_per_px);
+    EXPECT_NEAR(plane.x(), 30, 1);
+    EXPECT_LT(plane.y(), 1);
+    EXPECT_NEAR(extent_of_plan(slice_picture(volume, wall, cut, SliceKind::sagittal, {3, 0, 0}), mm_per_px).y(), 20, 1);
 }
 
 TEST(SlicePicture, OutsideTheVolumeIsNotBlackTissue) {

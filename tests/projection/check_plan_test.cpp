@@ -96,6 +96,7 @@ TEST(CheckPlan, WhatLiesOutsideTheVolumeIsStopped) {
     box.size = {181, 181, 140};  // up to z = 49: O1 reaches up to 57.4
     EXPECT_TRUE(
         said(check_plan(good_plan(), ball(), box).stops, "O1: its point (53, 16, 57) lies 8 mm outside the volume"));
+    EXPECT_TRUE(check_plan(good_plan(), ball(), box).outside_volume);
 }
 
 // 3 mm over the ball along its tangent; 8 mm under flat skin at 84 degrees it is 77 mm to the skin.

@@ -79,6 +79,16 @@ TEST_F(CaseFolderTest, AFolderWithFilesThatAreNotTheCasesIsNotReplaced) {
     EXPECT_NO_THROW(write_case(a_case(), in("case"), true));
 }
 
+TEST_F(CaseFolderTest, AReportAsPdfIsOfTheCaseThatItWasWrittenWith) {
+    const auto with_pdf = [](const fs::path& into) { write_safely(into / "for the file.pdf", "%PDF"); };
+    write_case(a_case(), in("case"), false, with_pdf);
+    EXPECT_NO_THROW(write_case(a_case(), in("case"), true, with_pdf));
+    write_safely(in("case") / "another.pdf", "%PDF");
+    const std::string said = refusal([&] { write_case(a_case(), in("case"), true, with_pdf); });
+    EXPECT_SAYS(said, "another.pdf");
+    EXPECT_EQ(said.find("for the file.pdf"), std::string::npos) << said;
+}
+
 TEST_F(CaseFolderTest, RefusalsSpeakOfWhatIsThere) {
     write_case(a_case(), in("case"));
     EXPECT_SAYS(refusal([&] { check_case_place(in("case"), false); }), "holds a case already");

@@ -95,6 +95,7 @@ TEST(DicomSeries, UnevenSlicesAreLaidWhereTheyLieHoweverLittleTheirStepsDiffer) 
         }
         EXPECT_LT(worst_hu, 1) << "steps of 4 and " << upper_step_mm << " mm, " << volume.size[2] << " slices";
         EXPECT_NEAR((volume.ct_from_voxel * Vector3d(0, 0, volume.size[2] - 1)).z(), heights_mm.back(), 1e-6);
+        EXPECT_NEAR(volume.widest_gap_mm, upper_step_mm > 4.02 ? upper_step_mm : 0, 1e-6);
         if (upper_step_mm > 4.02) {
             EXPECT_THROW(read_volume(into), InputError) << upper_step_mm;
         }

@@ -45,6 +45,16 @@ TEST(SliceFaults, MissingSlicesAreSaidWithTheirPlace) {
     EXPECT_NE(volume.notes[0].find("missing between them"), std::string::npos) << volume.notes[0];
 }
 
+TEST(SliceFaults, ABorderOfOneValueRoundNoiseIsNone) {  // as a program pads a volume
+    Volume volume = stacked(kSize, [](int k) { return k; });
+    for (int k = 0; k < kSize; ++k)
+        for (int j = 0; j < kSize; ++j)
+            for (int i = 0; i < kSize; ++i)
+                if (k >= kSize - 6 || k < 5 || j < 6) volume.values[volume.index(i, j, k)] = -3000;
+    note_slice_faults(volume);
+    EXPECT_TRUE(volume.notes.empty()) << volume.notes.front();
+}
+
 TEST(SliceFaults, SlicesThatAreThereTwiceAreSaid) {
     Volume volume = stacked(kSize, [](int k) { return k; });
     const auto slab = static_cast<std::ptrdiff_t>(volume.index(0, 0, 1));
