@@ -273,7 +273,8 @@ SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const Triang
         layers.boneless_cm2 = area_cm2 * boneless_share(samples, [&](const Sample& s) {
                                   return volume.is_hu ? bone_in_hu(s, greys) <= kBoneTo_mm : bone_of(s, brain).dark;
                               });
-    if (volume.is_hu && !samples.empty()) {
+    constexpr double kBlended_mm = 3;  // between slices so far apart what was laid there is a blend of air and skin
+    if (volume.is_hu && !samples.empty() && volume.widest_gap_mm <= kBlended_mm) {
         layers.light_in_ct = light_patches(samples, volume, skin, layers.edge_blur_mm, greys.of(kLight_hu));
         layers.light_cm2 =
             area_cm2 * static_cast<double>(layers.light_in_ct.size()) / static_cast<double>(samples.size());
