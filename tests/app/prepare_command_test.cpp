@@ -27,8 +27,8 @@ TEST_F(CommandsTest, PrepareEndsWithAReportThatNeedsNothingElse) {
     for (auto at = page.find("data:image/png;base64,"); at != std::string::npos;
          at = page.find("data:image/png;base64,", at + 1))
         ++pictures;
-    EXPECT_EQ(pictures, 13u)
-        << "slices through the middle and through the plan, the head from four sides and from above, "
+    EXPECT_EQ(pictures, 14u)
+        << "slices through the middle and through the plan, the head from four sides, from above and from below, "
            "what was thrown away from two";
     EXPECT_EQ(page.find("://"), std::string::npos) << "nothing comes from a network";
     const json report = read_json(root() / "case" / "report.json");
