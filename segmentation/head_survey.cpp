@@ -53,12 +53,55 @@ struct Sampler {
     }
 };
 
+constexpr double kLeastEdges = 0.25;  // share of a box's edges that shows something, for air to enter there
+constexpr double kMostOff = 0.08;     // how far inside of what was measured such a box may lie, of its width each side
+constexpr double kOffStep = 0.01;
+
+/// 1 along the edges of a box in the volume's voxels, `width` of them inwards.
+Mask edges_of(const Eigen::AlignedBox3d& box, const Vector3d& width, const std::vector<Vector3d>& places) {
+    Mask edges(places.size(), 0);
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t v) {
+        if (!box.contains(places[v])) return;
+        int at_ends = 0;
+        for (int a = 0; a < 3; ++a)
+            at_ends += places[v][a] < box.min()[a] + width[a] || places[v][a] > box.max()[a] - width[a];
+        edges[v] = at_ends >= 2;
+    });
+    return edges;
+}
+
+/// Where blank places lie all round what was measured (padding, a picture straightened for its gradients), nothing is
+/// measured along the edges of the volume's box, and air would find no way in: the edges are then those of the largest
+/// box within that shows something along enough of them. Its faces would not do: one of them cuts the neck.
+Mask rim_within_blank(const HeadSurvey& survey, const Eigen::Affine3d& voxel_from_ct, const Vector3d& width) {
+    std::vector<Vector3d> places(survey.measured.size());
+    Eigen::AlignedBox3d all;
+    for (std::size_t v = 0; v < places.size(); ++v) {
+        places[v] = voxel_from_ct * survey.place_of(v);
+        if (survey.measured[v]) all.extend(places[v]);
+    }
+    for (double off = 0; !all.isEmpty() && off < kMostOff + kOffStep / 2; off += kOffStep) {
+        const Vector3d inwards = off * all.sizes();
+        Mask edges = edges_of({all.min() + inwards, all.max() - inwards}, width, places);
+        std::size_t shown = 0, count = 0;
+        for (std::size_t v = 0; v < edges.size(); ++v) count += edges[v], shown += edges[v] && survey.measured[v];
+        if (static_cast<double>(shown) < kLeastEdges * static_cast<double>(count)) continue;
+        for (std::size_t v = 0; v < edges.size(); ++v) edges[v] = edges[v] && survey.measured[v];
+        return edges;
+    }
+    return Mask(survey.measured.size(), 0);
+}
+
 }  // namespace
 
 Vector3d HeadSurvey::place_of(std::size_t index) const {
     const std::size_t ni = grid.row(), nj = static_cast<std::size_t>(grid.size[1]);
     return first_in_ct + step_mm() * Vector3d(static_cast<double>(index % ni), static_cast<double>(index / ni % nj),
                                               static_cast<double>(index / ni / nj));
+}
+
+bool HeadSurvey::has_rim() const {
+    return std::find(rim.begin(), rim.end(), 1) != rim.end();
 }
 
 HeadSurvey survey_of(const Volume& volume, const SurveySettings& settings) {
@@ -103,6 +146,7 @@ HeadSurvey survey_of(const Volume& volume, const SurveySettings& settings) {
                 survey.rim[at] = at_ends >= 2;
             }
     });
+    if (!survey.has_rim()) survey.rim = rim_within_blank(survey, voxel_from_ct, rim_width);
     return survey;
 }
 

@@ -15,13 +15,14 @@ struct HeadSurvey {
     Eigen::Vector3d first_in_ct = Eigen::Vector3d::Zero();  ///< centre of voxel (0,0,0), mm
     std::vector<float> values;                              ///< 0 where nothing was measured
     Mask measured;                                          ///< 1 where the volume reaches
-    Mask rim;                                               ///< 1 along the twelve edges of the volume's own box
+    Mask rim;  ///< 1 along the twelve edges of the volume's own box; where none shows anything, of one within
 
     double step_mm() const { return grid.spacing_mm.x(); }
     std::size_t index(int i, int j, int k) const {
         return static_cast<std::size_t>(k) * grid.slab() + static_cast<std::size_t>(j) * grid.row() +
                static_cast<std::size_t>(i);
     }
+    bool has_rim() const;                               ///< else air finds no way in
     Eigen::Vector3d place_of(std::size_t index) const;  ///< centre of a voxel in ct
 };
 

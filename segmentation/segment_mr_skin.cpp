@@ -147,12 +147,13 @@ void smooth_loud_places(Volume& leveled, const Mask& places, LevelMap& map, int&
     }
 }
 
-/// Whether the air round the head shows anything but the blank value.
-bool is_not_air(float blank, const HeadSurvey& survey, const Mask& head) {
+/// Whether the air round the head shows anything but the blank value. What is left of it once the blank is forgotten
+/// says so: where a scanner sets low values to 0, single specks of noise stay, which are no air that can be measured.
+bool is_not_air(const HeadSurvey& without_blank, const HeadSurvey& survey, const Mask& head) {
     const std::vector<float> away = distance_from(head, 1, survey.grid, 30);
     std::size_t air = 0, blank_air = 0;
     for (std::size_t v = 0; v < head.size(); ++v)
-        if (survey.measured[v] && away[v] > 6 && away[v] < 24) ++air, blank_air += survey.values[v] == blank;
+        if (survey.measured[v] && away[v] > 6 && away[v] < 24) ++air, blank_air += !without_blank.measured[v];
     return 2 * blank_air < air;
 }
 
@@ -191,12 +192,16 @@ SkinMask segment_mr_skin(const Volume& volume, const SkinSettings& settings,
     HeadOutline outline = outline_of(survey, of_outline);
     SkinMask result;
     Volume leveled = volume;
-    if (const auto blank = blank_value(volume);
-        blank && outline.volume_ml > 0 && is_not_air(*blank, survey, outline.head)) {
-        result.blank = blank;
+    if (const auto blank = blank_value(volume); blank && outline.volume_ml > 0) {
         forget_blank(leveled, *blank);
-        survey = survey_of(leveled);
-        outline = outline_of(survey, of_outline);
+        HeadSurvey without_blank = survey_of(leveled);
+        if (without_blank.has_rim() && is_not_air(without_blank, survey, outline.head)) {
+            result.blank = blank;
+            survey = std::move(without_blank);
+            outline = outline_of(survey, of_outline);
+        } else {
+            leveled = volume;
+        }
     }
     if (outline.volume_ml <= 0 || outline.levels.empty()) refuse("nothing thick stands out against the air");
     if (outline.volume_ml < kLeastBody_ml)
