@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "planning_io/types/error.h"
 #include "segmentation/segment_skin.h"
@@ -351,64 +350,6 @@ TEST(TriangulateSkin, TakesNoSkinForABlankedEdgeWhereAirShowsOneValue) {
     for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v)
         ends += skin.flags[v] == kCutPlane && !is_below(skin.vertices_in_ct[v]);
     EXPECT_EQ(ends, 0U);
-}
-
-/// The egg of `depth_in_head` as an MR shows it in noisy air, with `spoil` done to each value by where it lies.
-Volume mr_head(const std::function<float(const Vector3d& place, float value)>& spoil) {
-    Volume mr = mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); }, {125, 145, 125}, 24);
-    for (int k = 0; k < mr.size[2]; ++k)
-        for (int j = 0; j < mr.size[1]; ++j)
-            for (int i = 0; i < mr.size[0]; ++i) {
-                float& value = mr.values[mr.index(i, j, k)];
-                value = spoil(mr.ct_from_voxel * Vector3d(i, j, k), value);
-            }
-    return mr;
-}
-
-/// Share of the skin found that lies more than 2 mm off the egg.
-double share_off(const Volume& mr, const SkinMask& mask) {
-    const TriangleMesh skin = triangulate_skin(mr, mask);
-    std::size_t off = 0;
-    for (const Vector3d& p : skin.vertices_in_ct) off += std::abs(depth_in_head(p)) > 2;
-    return static_cast<double>(off) / static_cast<double>(skin.vertices_in_ct.size());
-}
-
-TEST(SegmentSkin, FindsAnMrHeadInNoisyAirWithinAZeroBorder) {
-    const auto padded = [](const Vector3d& p, float value) {
-        return (p.cwiseAbs().array() > Vector3d(112, 130, 110).array()).any() ? 0 : value;
-    };
-    const Volume mr = mr_head(padded);
-    EXPECT_LT(share_off(mr, segment_skin(mr)), 0.01);
-}
-
-TEST(SegmentSkin, FindsAnMrHeadWhoseBlankBorderIsCurvedByGradientCorrection) {
-    const auto straightened = [](const Vector3d& p, float value) {
-        const Vector3d r = p.cwiseQuotient(Vector3d(125, 145, 125)).cwiseAbs2();
-        const bool blank = ((r.cwiseSqrt().array() - 0.98 + 0.07 * (r.sum() - r.array())) > 0).any();
-        return blank ? 0 : value;
-    };
-    const Volume mr = mr_head(straightened);
-    EXPECT_LT(share_off(mr, segment_skin(mr)), 0.01);
-}
-
-TEST(SegmentSkin, FindsAnMrHeadInAirThatWasCutToZeroButForSpecks) {
-    const auto cut = [](const Vector3d&, float value) { return value < 50 ? 0 : value; };
-    const Volume mr = mr_head(cut);
-    const std::size_t air = mr.index(0, 0, 8);  // slices below the head
-    std::size_t specks = 0;
-    for (std::size_t v = 0; v < air; ++v) specks += mr.values[v] > 0;
-    EXPECT_GT(static_cast<double>(specks), 0.05 * static_cast<double>(air));
-    const SkinMask mask = segment_skin(mr);
-    EXPECT_FALSE(mask.blank);
-    EXPECT_LT(share_off(mr, mask), 0.01);
-}
-
-TEST(SegmentSkin, AnMrHeadInAirOfOneValueKeepsItForAir) {
-    const auto masked = [](const Vector3d& p, float value) { return depth_in_head(p) < -2 ? 0 : value; };
-    const Volume mr = mr_head(masked);
-    const SkinMask mask = segment_skin(mr);
-    EXPECT_FALSE(mask.blank);
-    EXPECT_LT(share_off(mr, mask), 0.01);
 }
 
 }  // namespace

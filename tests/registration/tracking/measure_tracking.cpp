@@ -19,24 +19,16 @@
 
 #include "planning_io/types/statistics.h"
 #include "planning_io/volume/read_volume.h"
-#include "registration/simulation/rig_layout.h"
-#include "registration/tracking/ellipse.h"
 #include "registration/tracking/fit_pose.h"
-#include "registration/tracking/pair_markers.h"
 #include "registration/tracking/track_patient.h"
+#include "tests/registration/tracking/drawn_frames.h"
 #include "tests/support/test_data.h"
 
 namespace planlight::test {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
-using simulation::Optics;
 using simulation::Preset;
-
-std::string name_of(Preset preset) {
-    return preset == Preset::paper ? "paper" : "modern";
-}
 
 /// Errors of one kind of frame, with their stated sigma and bound.
 struct Figures {
@@ -84,156 +76,15 @@ void print(const std::string& title, const std::map<std::string, Figures>& kinds
     for (const auto& [words, count] : why) fmt::print("  {:>6} refused: {}\n", count, words);
 }
 
-struct Sticker {
-    Vector3d centre, normal;
-};
-
-/// Stickers on a ball of 80 mm before the rig's working point, at least 28 mm apart.
-std::vector<Sticker> stickers(int count, std::mt19937& random) {
-    std::normal_distribution<double> unit;
-    std::vector<Sticker> placed;
-    for (int tries = 0; static_cast<int>(placed.size()) < count && tries < 10000; ++tries) {
-        const Vector3d n = Vector3d(0.5 * unit(random), 0.5 * unit(random), -1).normalized();
-        const Sticker s{Vector3d(0, 0, 60) + 80 * n, n};
-        bool apart = true;
-        for (const Sticker& other : placed) apart = apart && (other.centre - s.centre).norm() > 28;
-        if (apart) placed.push_back(s);
-    }
-    return placed;
-}
-
-/// A disc of 4 mm radius as `find_markers` measures it: the ellipse's centre, with the noise that it states.
-std::optional<MarkerObservation> measured(const Optics& camera, const Sticker& s, double contrast,
-                                          std::mt19937& random) {
-    const Vector3d back = (camera.eye - s.centre).normalized();
-    const double ratio = back.dot(s.normal);
-    if (ratio < 0.45) return std::nullopt;
-    std::vector<Vector2d> rim;
-    const Vector3d a = s.normal.unitOrthogonal(), b = s.normal.cross(a);
-    for (int i = 0; i < 32; ++i) {
-        const double angle = 2 * std::numbers::pi * i / 32;
-        rim.push_back(camera.pixel_of(s.centre + 4 * (std::cos(angle) * a + std::sin(angle) * b)));
-    }
-    std::vector<bool> used;
-    const auto ellipse = fit_ellipse_to_points(rim, used);
-    if (!ellipse) return std::nullopt;
-    const Vector2d pixel = ellipse->centre;
-    if (pixel.minCoeff() < 20 || pixel.x() > camera.columns - 20 || pixel.y() > camera.rows - 20) return std::nullopt;
-    MarkerObservation seen;
-    seen.radius_px = ellipse->half_axes().mean();
-    seen.axis_ratio = ratio;
-    seen.contrast = contrast;
-    const double noise =
-        std::hypot(1.2 * 2 * 2 / contrast / std::sqrt(std::numbers::pi * seen.radius_px * ratio), 0.004);
-    seen.steady_px = 4 / 900. * seen.radius_px * ratio * std::sqrt(1 - ratio * ratio);
-    seen.sigma_px = std::hypot(noise, seen.steady_px);
-    std::normal_distribution<double> unit(0, noise);
-    seen.pixel = pixel + Vector2d(unit(random), unit(random));
-    return seen;
-}
-
-/// One rig, one patient, one reference; frames of it are drawn one by one.
-struct Room {
-    simulation::RigLayout rig;
-    RigCalibration calibration;
-    std::vector<Sticker> in_room;          ///< those that both cameras saw
-    std::vector<PatientMarker> reference;  ///< the same
-    double contrast = 100;
-
-    Room(Preset preset, std::mt19937& random) : rig(simulation::build_rig(preset, random)) {
-        calibration = simulation::calibrated(rig, 1, random);
-        contrast = std::uniform_real_distribution<double>(40, 150)(random);
-        const int count = 4 + static_cast<int>(random() % 6);
-        for (const Sticker& s : stickers(count, random)) {
-            const auto l = measured(rig.left_camera, s, contrast, random),
-                       r = measured(rig.right_camera, s, contrast, random);
-            if (!l || !r) continue;
-            const auto marker = triangulate_marker(calibration, *l, *r);
-            if (!marker) continue;
-            const double steady = std::hypot(l->steady_px, r->steady_px), all = std::hypot(l->sigma_px, r->sigma_px);
-            in_room.push_back(s);
-            reference.push_back(
-                {marker->point_in_rig, marker->sigma_mm * std::sqrt(1 - steady * steady / (all * all))});
-        }
-    }
-};
-
-struct Frame {
-    std::vector<Sighting> sightings;
-    RigidTransform truth;
-    std::string kind;
-};
-
-/// `slipped`: a marker that has moved by so much on the skin.
-Frame frame_of(const Room& room, std::mt19937& random, int slipped = -1, const Vector3d& slip = Vector3d::Zero()) {
-    std::normal_distribution<double> unit;
-    std::uniform_real_distribution<double> share(0, 1);
-    Frame frame;
-    const double far = share(random), mm = far < 0.25 ? 0 : far < 0.6 ? 15 : 60, degrees = mm * 0.35;
-    RigidTransform moved = RigidTransform::Identity();
-    const Vector3d axis = Vector3d(unit(random), unit(random), unit(random)).normalized();
-    moved.linear() = Eigen::AngleAxisd(degrees * share(random) * std::numbers::pi / 180, axis).toRotationMatrix();
-    const Vector3d way =
-        mm * std::cbrt(share(random)) * Vector3d(unit(random), unit(random), unit(random)).normalized();
-    const Vector3d neck(0, 0, 60);
-    moved.translation() = neck + way - moved.linear() * neck;
-    const RigidTransform rig_from_room = room.rig.room_from_rig.inverse();
-    frame.truth = rig_from_room * moved * room.rig.room_from_rig;
-
-    const double pattern = share(random);
-    const bool left_too = pattern < 0.7 || pattern > 0.85, right_too = pattern < 0.85;  // a third by one camera alone
-    const double covered_by_both = share(random) < 0.5 ? 0 : share(random),
-                 covered = share(random) < 0.6 ? 0 : 0.5 * share(random);
-    int left = 0, right = 0;
-    for (std::size_t k = 0; k < room.in_room.size(); ++k) {
-        if (share(random) < covered_by_both) continue;
-        const Vector3d centre = room.in_room[k].centre + (static_cast<int>(k) == slipped ? slip : Vector3d::Zero());
-        const Sticker s{moved * centre, moved.linear() * room.in_room[k].normal};
-        for (const bool is_left : {true, false}) {
-            if (!(is_left ? left_too : right_too) || share(random) < covered) continue;
-            const auto seen =
-                measured(is_left ? room.rig.left_camera : room.rig.right_camera, s, room.contrast, random);
-            if (seen) frame.sightings.push_back({static_cast<int>(k), is_left, *seen}), ++(is_left ? left : right);
-        }
-    }
-    const int seen = distinct_markers(frame.sightings);
-    frame.kind = fmt::format("{}, {}, {}", left && right ? "both cameras" : "one camera  ",
-                             seen < 4   ? "3 markers  "
-                             : seen < 6 ? "4, 5 markers"
-                                        : "6 to 9 markers",
-                             mm < 1    ? "at the reference"
-                             : mm < 20 ? "to 15 mm and 5 deg off"
-                                       : "to 60 mm and 21 deg off");
-    return frame;
-}
-
-/// An item of the plan on the skin, 30 mm wide, in patient.
-std::vector<Vector3d> plan_of(const Room& room, std::mt19937& random) {
-    std::normal_distribution<double> unit;
-    const Vector3d n = Vector3d(0.6 * unit(random), 0.6 * unit(random), -1).normalized(), a = n.unitOrthogonal(),
-                   b = n.cross(a), entry = Vector3d(0, 0, 60) + 80 * n;
-    std::vector<Vector3d> places;
-    for (const Vector3d& p : {entry, Vector3d(entry + 15 * a), Vector3d(entry - 15 * a), Vector3d(entry + 15 * b),
-                              Vector3d(entry - 15 * b)})
-        places.push_back(room.rig.room_from_rig.inverse() * p);
-    return places;
-}
-
-double largest_off(const RigidTransform& found, const RigidTransform& truth, const std::vector<Vector3d>& places) {
-    double largest = 0;
-    for (const Vector3d& p : places) largest = std::max(largest, (found * p - truth * p).norm());
-    return largest;
-}
-
 void measure_geometry(Preset preset, int frames, unsigned seed) {
     constexpr int kFramesOfARoom = 10;
     std::mt19937 random(seed), random_plan(seed);
     std::map<std::string, Figures> told, untold;
     for (int drawn = 0; drawn < frames;) {
-        const Room room(preset, random);
+        const DrawnRoom room(preset, random);
         if (room.reference.size() < 3) continue;
         for (int i = 0; i < kFramesOfARoom; ++i) {
-            const Frame frame = frame_of(room, random);
+            const DrawnFrame frame = frame_of(room, random);
             if (distinct_markers(frame.sightings) < 3) continue;
             ++drawn;
             const auto plan = plan_of(room, random_plan);
@@ -264,13 +115,13 @@ void measure_slips(Preset preset, int frames, unsigned seed) {
     std::mt19937 random(seed);
     std::map<std::string, Slips> kinds;
     for (int drawn = 0; drawn < frames;) {
-        const Room room(preset, random);
+        const DrawnRoom room(preset, random);
         if (room.reference.size() < 3) continue;
         for (const double slip_mm : {0.3, 0.5, 0.7, 1., 2.}) {
             const int slipped = static_cast<int>(random() % room.in_room.size());
             const Vector3d n = room.in_room[static_cast<std::size_t>(slipped)].normal, a = n.unitOrthogonal();
             const double angle = std::uniform_real_distribution<double>(0, 2 * std::numbers::pi)(random);
-            const Frame frame =
+            const DrawnFrame frame =
                 frame_of(room, random, slipped, slip_mm * (std::cos(angle) * a + std::sin(angle) * n.cross(a)));
             const auto plan = plan_of(room, random);
             const int seen = distinct_markers(frame.sightings);
