@@ -61,8 +61,9 @@ double external_reliability_mm(const RigCalibration& rig, const std::vector<Pati
         const Matrix3d slips = 2 * limits.inverse();
         for (const Vector3d& r : from_middle) {
             const Matrix3d moved = movement_by_twist(r) * twist_by_slip;
-            const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(moved * slips * moved.transpose(),
-                                                                Eigen::EigenvaluesOnly);
+            const Matrix3d spread = moved * slips * moved.transpose();
+            if (spread.trace() <= squared) continue;  // no larger than its trace
+            const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(spread, Eigen::EigenvaluesOnly);
             squared = std::max(squared, eigen.eigenvalues()[2]);
         }
     }
