@@ -12,6 +12,7 @@
 
 #include "planning_io/types/axes_along.h"
 #include "projection/check_items.h"
+#include "projection/skin_place.h"
 #include "projection/skin_surface.h"
 #include "projection/triangle_tree.h"
 
@@ -23,7 +24,6 @@ using triangle_tree::Kernel, triangle_tree::Primitive, triangle_tree::Tree, tria
 using triangle_tree::to_cgal, triangle_tree::to_eigen;
 
 constexpr double kTouches_mm = 1e-6;
-constexpr double kPerpendicularOver_mm = 8;
 constexpr double kRounding_mm = 1e-7;  // of a distance that is a round number
 
 /// A convex solid of a plan item: a box of three half sizes (a plane's has no height, a way's is a line) about its
@@ -66,12 +66,8 @@ std::vector<Solid> solids_of(const OsteotomyLine& line, const SkinSurface*) {
 }
 
 std::vector<Solid> solids_of(const Borehole& hole, const SkinSurface* skin) {
-    Vector3d inwards = hole.axis_in_ct.value_or(Vector3d::Zero());
-    if (inwards.norm() < 0.5) {
-        if (skin == nullptr) return {};
-        inwards = -skin->mean_normal(skin->nearest(hole.position_in_ct), kPerpendicularOver_mm);
-    }
-    inwards.normalize();
+    if (!has_axis(hole) && !skin) return {};
+    const Vector3d inwards = has_axis(hole) ? Vector3d(hole.axis_in_ct->normalized()) : drilling_direction(hole, *skin);
     const double depth_mm = std::max(hole.depth_mm, 0.0), radius_mm = std::max(hole.diameter_mm / 2, 0.0);
     return {{hole.position_in_ct + depth_mm / 2 * inwards,
              axes_along(inwards),

@@ -54,6 +54,12 @@ bool has_axis(const Borehole& hole) {
     return hole.axis_in_ct && hole.axis_in_ct->norm() > 0.5;
 }
 
+Vector3d drilling_direction(const Borehole& hole, const SkinSurface& skin) {
+    constexpr double kPerpendicularOver_mm = 8;
+    if (has_axis(hole)) return hole.axis_in_ct->normalized();
+    return -skin.mean_normal(skin.nearest(hole.position_in_ct), kPerpendicularOver_mm);
+}
+
 PlaceOnSkin place_of(const Trajectory& t, const SkinSurface& ct_skin, const SkinSurface& skin_now) {
     const double length_mm = t.length_mm();
     const Vector3d inwards = length_mm > 1e-6 ? Vector3d((t.target_in_ct - t.entry_in_ct) / length_mm)

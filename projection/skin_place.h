@@ -40,6 +40,9 @@ PlaceOnSkin place_of(const Borehole& hole, const SkinSurface& ct_skin, const Ski
 /// It leans on an axis of its own, and is not carried with the skin.
 bool has_axis(const Borehole& hole);
 
+/// The way a hole is drilled, unit and inwards: its axis, else the skin's perpendicular over 8 mm round it.
+Eigen::Vector3d drilling_direction(const Borehole& hole, const SkinSurface& skin);
+
 /// What the skin is not in a triangle: any corner at the end of the volume, else any on a lid.
 SkinFlag flag_at(const SkinSurface& skin, int triangle);
 inline SkinFlag flag_at(const SkinSurface& skin, const SkinSurface::Point& at) {

@@ -9,6 +9,7 @@
 #include "app/report/slice_picture.h"
 #include "app/windows/scene_view.h"
 #include "planning_io/types/error.h"
+#include "projection/skin_place.h"
 
 namespace planlight {
 
@@ -46,7 +47,15 @@ std::string place_of(SliceKind kind, const Vector3d& from_middle) {
     return said(from_middle.x(), "right of", "left of");
 }
 
-std::vector<ReportPicture> slices_at(const Volume& volume, const Case& the_case, const Vector3d& at) {
+/// The plan as slices show it: each hole with the way it is drilled.
+Plan with_axes(Plan plan, const TriangleMesh& skin) {
+    if (skin.triangles.empty() || std::ranges::all_of(plan.boreholes, has_axis)) return plan;
+    const SkinSurface surface(skin);
+    for (Borehole& hole : plan.boreholes) hole.axis_in_ct = drilling_direction(hole, surface);
+    return plan;
+}
+
+std::vector<ReportPicture> slices_at(const Volume& volume, const Case& the_case, const Plan& plan, const Vector3d& at) {
     const Vector3d middle = middle_of(the_case.skin);
     struct Kind {
         SliceKind kind;
@@ -58,7 +67,7 @@ std::vector<ReportPicture> slices_at(const Volume& volume, const Case& the_case,
     std::vector<ReportPicture> pictures;
     for (const auto& [kind, name, seen] : kKinds)
         pictures.push_back({name, fmt::format("{}, seen {}", place_of(kind, at - middle), seen),
-                            slice_picture(volume, the_case.skin, the_case.plan, kind, at)});
+                            slice_picture(volume, the_case.skin, plan, kind, at)});
     return pictures;
 }
 
@@ -111,8 +120,9 @@ Vector3d point_of_interest(const Case& the_case) {
 }
 
 void add_slices(const Volume& volume, const Case& the_case, PreparationPictures& pictures) {
-    pictures.middle_slices = slices_at(volume, the_case, middle_of(the_case.skin));
-    if (!the_case.plan.empty()) pictures.plan_slices = slices_at(volume, the_case, point_of_interest(the_case));
+    const Plan plan = with_axes(the_case.plan, the_case.skin);
+    pictures.middle_slices = slices_at(volume, the_case, plan, middle_of(the_case.skin));
+    if (!plan.empty()) pictures.plan_slices = slices_at(volume, the_case, plan, point_of_interest(the_case));
 }
 
 void add_views(const Case& the_case, const PlanDrawing& drawing, PreparationPictures& pictures) {

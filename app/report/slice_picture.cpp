@@ -150,23 +150,11 @@ void draw_near(const Vector3d& a, const Vector3d& b, const Sheet& sheet, cv::Mat
     }
 }
 
-/// The mean normal of the skin round a place, outwards; zero without skin within 8 mm.
-Vector3d normal_near(const TriangleMesh& skin, const Vector3d& p_in_ct) {
-    constexpr double kNear_mm = 8;
-    Vector3d sum = Vector3d::Zero();
-    for (const auto& t : skin.triangles) {
-        const auto corner = [&](std::size_t k) { return skin.vertices_in_ct[static_cast<std::size_t>(t[k])]; };
-        const Vector3d a = corner(0), b = corner(1), c = corner(2);
-        if ((a - p_in_ct).squaredNorm() < kNear_mm * kNear_mm) sum += (b - a).cross(c - a);
-    }
-    return sum.norm() > 0 ? Vector3d(sum.normalized()) : Vector3d::Zero();
-}
-
-/// A hole as deep and as wide as it is planned, square to the skin where the plan gives no axis.
-void draw_hole_near(const Borehole& hole, const TriangleMesh& skin, const Sheet& sheet, cv::Mat& canvas) {
-    const Vector3d along = hole.axis_in_ct ? *hole.axis_in_ct : Vector3d(-normal_near(skin, hole.position_in_ct)),
-                   from = hole.position_in_ct, to = from + std::max(hole.depth_mm, 1.0) * along;
-    if (along.norm() == 0) return;
+/// A hole as deep and as wide as it is planned.
+void draw_hole_near(const Borehole& hole, const Sheet& sheet, cv::Mat& canvas) {
+    if (!hole.axis_in_ct) return;
+    const Vector3d &along = *hole.axis_in_ct, &from = hole.position_in_ct,
+                   to = from + std::max(hole.depth_mm, 1.0) * along;
     draw_near(from, to, sheet, canvas);
     const Vector3d across = along.cross(sheet.frame.normal());
     const Vector3d aside = across.norm() > 0.1 ? across.normalized() : along.unitOrthogonal();
@@ -183,7 +171,7 @@ void draw_crossing(const Vector3d& a, const Vector3d& b, const Sheet& sheet, cv:
                cv::LINE_AA);
 }
 
-void draw_plan_near(const Plan& plan, const TriangleMesh& skin, const Sheet& sheet, cv::Mat& canvas) {
+void draw_plan_near(const Plan& plan, const Sheet& sheet, cv::Mat& canvas) {
     for (const auto& t : plan.trajectories) {
         draw_near(t.entry_in_ct, t.target_in_ct, sheet, canvas);
         if (std::abs(sheet.above_mm(t.target_in_ct)) > sheet.settings.plan_within_mm) continue;
@@ -191,7 +179,7 @@ void draw_plan_near(const Plan& plan, const TriangleMesh& skin, const Sheet& she
         cv::circle(canvas, {static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y()))}, 5, kPlanLine,
                    2, cv::LINE_AA);
     }
-    for (const auto& b : plan.boreholes) draw_hole_near(b, skin, sheet, canvas);
+    for (const auto& b : plan.boreholes) draw_hole_near(b, sheet, canvas);
     for (const auto& plane : plan.cut_planes) {
         const Vector3d u = 0.5 * plane.width_mm * plane.first_axis_in_ct,
                        v = 0.5 * plane.height_mm * plane.normal_in_ct.cross(plane.first_axis_in_ct);
@@ -227,7 +215,7 @@ RgbImage slice_picture(const Volume& volume, const TriangleMesh& skin, const Pla
     cv::Mat canvas(picture.height, picture.width, CV_8UC3, picture.pixels.data());
     draw_surface(skin, sheet, canvas, kSkinLine);
     for (const auto& structure : plan.risk_structures) draw_surface(structure.surface, sheet, canvas, kRiskLine);
-    draw_plan_near(plan, skin, sheet, canvas);
+    draw_plan_near(plan, sheet, canvas);
     constexpr int kEdge = 22;
     write_letter(canvas, sheet.frame.left_letter, kEdge, settings.height / 2);
     write_letter(canvas, sheet.frame.right_letter, settings.width - kEdge, settings.height / 2);

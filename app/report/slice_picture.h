@@ -21,8 +21,8 @@ struct SliceSettings {
 
 /// A slice of the volume (resampled trilinearly through its whole affine, so that a tilt or an oblique MR stands as the
 /// patient does) through `p_in_ct`, with the line in which it cuts the skin mesh (seals amber, ends of the volume
-/// grey), the plan near it, and R L A P S I at the sides. What is outside the volume is dark blue. Skin and plan may be
-/// empty.
+/// grey), the plan near it (of holes those with an axis), and R L A P S I at the sides. What is outside the volume is
+/// dark blue. Skin and plan may be empty.
 RgbImage slice_picture(const Volume& volume, const TriangleMesh& skin, const Plan& plan, SliceKind kind,
                        const Eigen::Vector3d& p_in_ct, const SliceSettings& settings = {});
 

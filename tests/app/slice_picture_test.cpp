@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/report/preparation_pictures.h"
 #include "app/report/thresholds_picture.h"
 
 namespace planlight::test {
@@ -106,18 +107,27 @@ Eigen::Vector2d extent_of_plan(const RgbImage& picture, double mm_per_px) {
                      : Eigen::Vector2d(mm_per_px * Eigen::Vector2d(right - left, bottom - top));
 }
 
-TEST(SlicePicture, HolesWithoutAnAxisAndCutPlanesAreOnIt) {
+TEST(SlicePicture, HolesAndCutPlanesAreOnIt) {
     TriangleMesh wall;  // skin that faces forwards, -y
     wall.vertices_in_ct = {{-3, -20, -3}, {3, -20, -3}, {3, -20, 3}, {-3, -20, 3}};
     wall.triangles = {{0, 1, 2}, {0, 2, 3}};
     Plan holes;
-    holes.boreholes.push_back({"H", {0, -20, 0}, std::nullopt, 7, 12, std::nullopt});
+    holes.boreholes.push_back({"H", {0, -20, 0}, Vector3d(0, 1, 0), 7, 12, std::nullopt});
     const Volume volume = air_with_a_ball({0, 0, -45});
     const double mm_per_px = 106.0 / slice_picture(volume, {}, {}, SliceKind::axial, {0, 0, 0}).width;
     const auto hole = extent_of_plan(slice_picture(volume, wall, holes, SliceKind::axial, {0, 0, 0}), mm_per_px);
     EXPECT_NEAR(hole.x(), 7, 0.6) << "as wide as it is planned";
-    EXPECT_NEAR(hole.y(), 12, 0.6) << "and as deep, square to the skin";
+    EXPECT_NEAR(hole.y(), 12, 0.6) << "and as deep";
     EXPECT_EQ(extent_of_plan(slice_picture(volume, wall, holes, SliceKind::axial, {0, 0, 20}), mm_per_px).norm(), 0);
+
+    Case without_axis;  // square to the skin then
+    without_axis.skin = wall;
+    without_axis.plan = holes;
+    without_axis.plan.boreholes[0].axis_in_ct.reset();
+    PreparationPictures pictures;
+    add_slices(volume, without_axis, pictures);
+    ASSERT_EQ(pictures.plan_slices.size(), 3u);
+    EXPECT_NEAR((extent_of_plan(pictures.plan_slices[0].picture, mm_per_px) - hole).norm(), 0, 0.6);
 
     Plan cut;
     cut.cut_planes.push_back({"C", {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, 30, 20, std::nullopt});

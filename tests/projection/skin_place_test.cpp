@@ -43,6 +43,15 @@ bool says(const DrawnItem& item, const std::string& words) {
 
 // Planned on the bone 8 mm under flat skin: an axis of theta to the perpendicular meets the skin 8 tan(theta) aside of
 // the nearest place, however far that is.
+TEST(SkinPlace, AHoleIsDrilledAlongItsAxisElseSquareToTheSkin) {
+    const SkinSurface& skin = ball();
+    const Vector3d out = Vector3d(1, 2, 3).normalized();
+    Borehole hole{"H", 58 * out, std::nullopt, 7, 10, std::nullopt};
+    EXPECT_GT(drilling_direction(hole, skin).dot(-out), 0.999) << "towards the middle of a ball";
+    hole.axis_in_ct = Vector3d(0, 0, -2);
+    EXPECT_LT((drilling_direction(hole, skin) - Vector3d(0, 0, -1)).norm(), 1e-12);
+}
+
 TEST(SkinPlace, AnObliqueAxisIsFollowedToTheSkin) {
     const SkinSurface sheet(test::sheet_mesh(200, 4));
     for (const double degrees : {0., 30., 59., 61., 65., 70., 80.}) {
