@@ -52,4 +52,13 @@ CutGreys cut_greys(const Volume& volume, const SkinMask& mask) {
     return cut;
 }
 
+double bright_end_share(const Volume& volume, const SkinMask& mask) {
+    if (volume.is_hu || mask.body.size() != volume.values.size() || volume.values.empty()) return 0;
+    const float greatest = *std::max_element(volume.values.begin(), volume.values.end());
+    double body = 0, cut = 0;
+    for (std::size_t v = 0; v < volume.values.size(); ++v)
+        if (mask.body[v] != 0) ++body, cut += volume.values[v] == greatest;
+    return body > 0 ? cut / body : 0;
+}
+
 }  // namespace planlight

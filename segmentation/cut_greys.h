@@ -16,4 +16,8 @@ struct CutGreys {
 /// Of a volume that is not in HU; else, and where there is no air, nothing is cut.
 CutGreys cut_greys(const Volume& volume, const SkinMask& mask);
 
+/// Share of the body that shows exactly the greatest value of a volume not in HU (0 of one in HU). Bone is a tenth of a
+/// head and more, and of one value where a CT was saved through a window for pictures.
+double bright_end_share(const Volume& volume, const SkinMask& mask);
+
 }  // namespace planlight

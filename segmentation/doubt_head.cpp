@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "segmentation/cut_greys.h"
 #include "segmentation/skin_doubts.h"
 
 namespace planlight {
@@ -14,6 +15,7 @@ namespace {
 constexpr double kLeastBall_mm = 40, kMostBall_mm = 100;  // newborn 45, adult with thick hair 85; a monkey's 38
 constexpr double kFewLayers_refused = 0.2, kFewLayers_masked = 0.45, kFewLayers_doubted = 0.5;
 constexpr double kFaintLayers = 0.85;  // of the vault: blurred averages show a faint layer all over, brains do not
+constexpr double kBrightEnd = 0.05;  // of the head at exactly the greatest value: its bone is more
 constexpr double kThinnestScalp_mm = 1.5;
 constexpr double kFaintInBlur = 0.35, kNoBrain_mm = 72;  // an adult's brain holds a ball of 65 mm
 constexpr double kBoneless_cm2 = 15;
@@ -79,7 +81,23 @@ void judge_proportions(const TriangleMesh& skin, const HeadBall& ball, const Mid
             remedy);
 }
 
-void judge_layers(const Volume& volume, bool air_is_blank, double faint_share, SkinJudgement& r) {
+/// Why no scalp was found over bone, for the refusal.
+SkinDoubt no_scalp(const Volume& volume, const SkinMask& mask, double layered_share) {
+    const double bright = bright_end_share(volume, mask);
+    if (bright > kBrightEnd)
+        return {fmt::format("Whether scalp lies over bone cannot be told: {:.0f} % of the head show exactly the "
+                            "greatest value, as where a CT was saved through a window for pictures, which makes "
+                            "bone and all that is brighter one grey",
+                            100 * bright),
+                "Give the series in HU: its DICOM files, or converted without a window."};
+    return {fmt::format("There is no scalp: only under {:.0f} % of the surface of the vault lies a layer of bone with "
+                        "soft tissue over it (on heads 60 to 100 %); this is a stripped brain, a phantom or no head",
+                        100 * layered_share),
+            kGiveHead};
+}
+
+void judge_layers(const Volume& volume, const SkinMask& mask, bool air_is_blank, double faint_share,
+                  SkinJudgement& r) {
     const bool hu = volume.is_hu;
     if (std::isnan(r.layered_share))
         return add(r.doubts,
@@ -105,11 +123,7 @@ void judge_layers(const Volume& volume, bool air_is_blank, double faint_share, S
                 100 * r.layered_share),
             kLookAtTheSkin);
     else if (r.layered_share < least)
-        add(r.refusals,
-            fmt::format("There is no scalp: only under {:.0f} % of the surface of the vault lies a layer of bone with "
-                        "soft tissue over it (on heads 60 to 100 %); this is a stripped brain, a phantom or no head",
-                        100 * r.layered_share),
-            kGiveHead);
+        r.refusals.push_back(no_scalp(volume, mask, r.layered_share));
     else if (r.layered_share < kFewLayers_doubted && !r.bright_bone)
         add(r.doubts,
             fmt::format("Only under {:.0f} % of the surface of the vault was bone found under a scalp (on heads 60 to "
@@ -190,11 +204,11 @@ void judge_beside(SkinJudgement& r) {
 
 }  // namespace
 
-void doubt_head(const Volume& volume, const TriangleMesh& skin, const HeadBall& ball, const MiddlePlane& plane,
-                const SkinLayers& layers, SkinJudgement& judgement) {
+void doubt_head(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin, const HeadBall& ball,
+                const MiddlePlane& plane, const SkinLayers& layers, SkinJudgement& judgement) {
     judge_size(judgement);
     judge_proportions(skin, ball, plane, judgement);
-    judge_layers(volume, layers.faint_share < kFaintLayers && layers.air_is_blank, layers.faint_share, judgement);
+    judge_layers(volume, mask, layers.faint_share < kFaintLayers && layers.air_is_blank, layers.faint_share, judgement);
     judge_face(skin, ball, judgement);
     judge_beside(judgement);
 }

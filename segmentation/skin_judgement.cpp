@@ -41,7 +41,7 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     result.bright_bone = layers.bright_bone;
     result.noise_sigma_mm = skin_edge_sigma_mm(volume, mask, skin);
     result.sigma_mm = std::max(result.noise_sigma_mm, 0.25 * std::max(0.0, result.edge_blur_mm - 1.5));
-    doubt_head(volume, skin, ball, things.plane, layers, result);
+    doubt_head(volume, mask, skin, ball, things.plane, layers, result);
     doubt_surface(mask, result);
     doubt_series(volume, mask, ball, greys, result);
     doubt_ends(result);

@@ -128,7 +128,7 @@ Preparation prepare(const Inputs& in, const PrepareOptions& options, ProgressBar
 }
 
 /// The volume is given up when its pictures are made: the views take as much memory as it does.
-PreparationReport report_of(Inputs& in, Preparation& done, ProgressBar& bar) {
+PreparationReport report_of(Inputs& in, Preparation& done, bool anonymous, ProgressBar& bar) {
     bar.show("report", 0);
     PreparationPictures pictures;
     add_slices(in.volume, done.prepared, pictures);
@@ -138,7 +138,7 @@ PreparationReport report_of(Inputs& in, Preparation& done, ProgressBar& bar) {
     release_spare_memory();
     add_views(done.prepared, done.drawing, pictures);
     if (!pictures.no_views.empty()) bar.warn(pictures.no_views);
-    PreparationReport report = preparation_report(done, done.drawing, removed, pictures);
+    PreparationReport report = preparation_report(done, done.drawing, removed, pictures, anonymous ? "" : operator_name());
     release_spare_memory();
     bar.show("report", 1);
     return report;
@@ -170,7 +170,7 @@ int run_prepare(const PrepareOptions& options) {
     Inputs in = read_inputs(options);
     bar.show("volume", 1);
     Preparation done = prepare(in, options, bar);
-    const PreparationReport report = report_of(in, done, bar);
+    const PreparationReport report = report_of(in, done, options.anonymous, bar);
     bar.show("case folder", 0);
     const bool in_the_case = !options.pdf.empty() && stands_in(options.pdf, options.out);  // and so a file of its own
     write_case(done.prepared, options.out, options.replace, [&](const Path& into) {
@@ -224,7 +224,7 @@ Run add_prepare(CLI::App& app) {
     sub->add_option("--plan-name", o.names.plan, "What the plan is called (default: its file's name)");
     sub->add_option("--plan-version", o.names.plan_version, "Which version of the plan it is");
     sub->add_flag("--anonymous", o.anonymous,
-                  "Leave UIDs, dates, descriptions and names of files and series out of the case folder")
+                  "Leave UIDs, dates, descriptions, the operator and names of files and series out of the case folder")
         ->excludes(patient);
     sub->add_option("--threshold", o.threshold, "Skin threshold, HU (default: found from the histogram)")
         ->excludes(surface);

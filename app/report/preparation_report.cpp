@@ -98,7 +98,7 @@ std::string series_of(const CaseNames& names) {
     return names.series.empty() ? "of " + names.series_date : names.series + ", " + names.series_date;
 }
 
-ReportFacts facts_of_plan(const Preparation& done) {
+ReportFacts facts_of_plan(const Preparation& done, const std::string& operator_name) {
     const Case& c = done.prepared;
     return {{"Patient", c.names.patient.empty() ? "not named" : c.names.patient},
             {"Title", c.names.title},
@@ -108,7 +108,7 @@ ReportFacts facts_of_plan(const Preparation& done) {
             {"Risk structures", risk_structures_of(c.plan)},
             {"Case", c.code},
             {"Prepared", time_in_words(c.created)},
-            {"Operator", operator_name()},
+            {"Operator", operator_name},
             {"Program", program_name()},
             {"Body", done.on_given_surface ? "" : fmt::format("{:.0f} ml", done.body_ml)},
             {"Cut off by the volume", cut_sides_of(done.judgement)}};
@@ -305,14 +305,14 @@ DocumentText figures_in_words(const Preparation& done) {
 }  // namespace
 
 PreparationReport preparation_report(const Preparation& done, const PlanDrawing& drawing, const RemovedPieces& removed,
-                                     const PreparationPictures& pictures) {
+                                     const PreparationPictures& pictures, const std::string& operator_name) {
     const Case& c = done.prepared;
     const SkinSurface skin(c.skin);
     const std::vector<PlanFact> facts = plan_facts(c.plan, drawing, c.lut, find_mid_plane(skin), &skin);
     Document document{"Preparation: " + title_of(c), "Report of preparation. Research software, not a medical device."};
     document.made_of_sheets = true;
     document.verdict = verdict_of(gathered(c.warnings, drawing));
-    document.facts = facts_of_plan(done);
+    document.facts = facts_of_plan(done, operator_name);
     const ReportFacts of_volume = facts_of_volume(done);
     document.facts.insert(document.facts.end(), of_volume.begin(), of_volume.end());
     add_slices(pictures, document.blocks);

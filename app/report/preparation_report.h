@@ -17,9 +17,11 @@ struct PreparationReport {
     std::string json;   ///< the same in figures
 };
 
-/// What the page says, from what was prepared; nothing is written yet.
+/// What the page says, from what was prepared; nothing is written yet. `operator_name`: who prepared it; empty where
+/// nobody may be named, and then no operator is on the page.
 PreparationReport preparation_report(const Preparation& prepared, const PlanDrawing& drawing,
-                                     const RemovedPieces& removed, const PreparationPictures& pictures);
+                                     const RemovedPieces& removed, const PreparationPictures& pictures,
+                                     const std::string& operator_name);
 
 /// report.html and report.json in the folder.
 void write_preparation_report(const PreparationReport& report, const std::filesystem::path& folder);

@@ -78,12 +78,20 @@ struct ByteSource::Inflater {
         stream.avail_in += static_cast<uInt>(in.gcount());
         return stream.avail_in;
     }
-    /// A gzip file may consist of several (RFC 1952, 2.2), as bgzip and pigz write it. What does not begin as one is no
-    /// more of it.
+    /// A gzip file may consist of several (RFC 1952, 2.2), as bgzip and pigz write it.
     bool begin_next_member(std::istream& in) {
         if (stream.avail_in < 2) fill(in);
         if (stream.avail_in < 2 || stream.next_in[0] != 0x1f || stream.next_in[1] != 0x8b) return false;
         return inflateReset(&stream) == Z_OK;
+    }
+    /// Whether only zeros are left, as a tape or a block device fills up a file.
+    bool rest_is_zeros(std::istream& in) {
+        while (stream.avail_in > 0 || fill(in) > 0) {
+            if (std::any_of(stream.next_in, stream.next_in + stream.avail_in, [](unsigned char c) { return c != 0; }))
+                return false;
+            stream.avail_in = 0;
+        }
+        return true;
     }
     Inflater(const Inflater&) = delete;
     Inflater& operator=(const Inflater&) = delete;
@@ -123,9 +131,11 @@ std::size_t ByteSource::some(unsigned char* to, std::size_t bytes) {
         if (z.avail_in < 2 && inflater_->fill(in_) == 0)
             throw DamagedFileError(file_, "is cut short: its packed voxels have no end", kCopyAgain);
         const int code = inflate(&z, Z_NO_FLUSH);
-        if (code == Z_STREAM_END)
+        if (code == Z_STREAM_END) {
             inflater_->at_end = !inflater_->begin_next_member(in_);
-        else if (code != Z_OK && code != Z_BUF_ERROR)
+            if (inflater_->at_end && !inflater_->rest_is_zeros(in_))
+                throw DamagedFileError(file_, "goes on after the end of its packed voxels", kCopyAgain);
+        } else if (code != Z_OK && code != Z_BUF_ERROR)
             throw DamagedFileError(file_, "is damaged: its packed voxels or their checksum are wrong", kCopyAgain);
     }
     return wanted - z.avail_out;

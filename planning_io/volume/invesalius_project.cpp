@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <string_view>
 
@@ -30,6 +31,8 @@ using PlistOwner = std::unique_ptr<void, void (*)(plist_t)>;
 
 constexpr const char* kSaveAgain = "Open the project in InVesalius 3 and save it again.";
 constexpr std::uint64_t kAxial = 1;
+constexpr std::uint64_t kMaxMatrixBytes = std::uint64_t{4} << 30;
+constexpr std::uint64_t kMemoryTimes = 3;  ///< int16 as they are stored, and as float
 constexpr double kPerpendicular = 1e-3;
 
 [[noreturn]] void damaged(const fs::path& file, const std::string& problem) {
@@ -176,8 +179,10 @@ bool add_triangles(vtkCellArray& cells, bool strips, vtkIdType points, TriangleM
 
 Volume read_invesalius_volume(const fs::path& file) {
     static const std::string kUsualName = "matrix.dat";
-    Entries entries =
-        read_tar_entries(file, [](const std::string& name) { return is_plist(name) || name == kUsualName; });
+    const auto read = [&](const std::function<bool(const std::string&)>& wanted) {
+        return read_tar_entries(file, wanted, kMaxMatrixBytes, kMemoryTimes);
+    };
+    Entries entries = read([](const std::string& name) { return is_plist(name) || name == kUsualName; });
     const MatrixHeader header = read_header(entries, file);
     const auto [nx, ny, nz] = header.size;
     const auto [sx, sy, sz] = header.spacing_mm;
@@ -187,7 +192,7 @@ Volume read_invesalius_volume(const fs::path& file) {
     check_grid(volume, file, kPerpendicular);
     check_not_defaced(file, header.name);
     if (header.file_name != kUsualName)
-        entries.merge(read_tar_entries(file, [&](const std::string& name) { return name == header.file_name; }));
+        entries.merge(read([&](const std::string& name) { return name == header.file_name; }));
     const auto matrix = entries.find(header.file_name);
     if (matrix == entries.end()) damaged(file, "holds no matrix");
     const auto row = static_cast<std::size_t>(nx), rows = static_cast<std::size_t>(ny),

@@ -2,12 +2,14 @@
 
 #include <archive.h>
 #include <archive_entry.h>
+#include <fmt/format.h>
 #include <zlib.h>
 
 #include <array>
 #include <memory>
 #include <vector>
 
+#include "planning_io/files/memory_need.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -16,6 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMaxInflatedBytes = std::uint64_t{16} << 30;
+constexpr std::uint64_t kMostInflation = 1040;  // deflate's limit is 1032 : 1
+constexpr const char* kTooLarge = "Close other programs, or resample the volume to larger voxels.";
 constexpr const char* kCopyAgain = "Copy the project again from where it came from.";
 
 /// Inflates through zlib, which checks gzip's CRC (libarchive's own gzip filter does not).
@@ -50,14 +54,22 @@ struct GzipStream {
     }
 };
 
-std::string read_entry(archive* tar, archive_entry* entry, const fs::path& file, std::uint64_t max_bytes) {
+std::string read_entry(archive* tar, archive_entry* entry, const fs::path& file, std::uint64_t max_bytes,
+                       std::uint64_t memory_times) {
     const auto size = archive_entry_size(entry);
     if (size < 0 || static_cast<std::uint64_t>(size) > max_bytes)
         throw DamagedFileError(file,
                                "holds an entry of " + std::to_string(size) + " bytes, more than the " +
                                    std::to_string(max_bytes) + " allowed",
                                kCopyAgain);
-    std::string content;  // grows with what is really there: the size in the header may be a lie
+    std::error_code error;
+    const std::uint64_t stored = fs::file_size(file, error), bytes = static_cast<std::uint64_t>(size);
+    if (error || bytes > stored * kMostInflation)  // the size in the header may be a lie
+        throw DamagedFileError(file, "is cut or damaged", kCopyAgain);
+    check_memory(fmt::format("{}: reading its {} MiB", file.string(), (bytes >> 20) + 1), memory_times * bytes,
+                 kTooLarge);
+    std::string content;
+    content.reserve(bytes);
     std::array<char, 1 << 16> block{};
     la_ssize_t got = 0;
     while ((got = archive_read_data(tar, block.data(), block.size())) > 0)
@@ -71,7 +83,7 @@ std::string read_entry(archive* tar, archive_entry* entry, const fs::path& file,
 
 std::map<std::string, std::string> read_tar_entries(const fs::path& file,
                                                     const std::function<bool(const std::string&)>& wanted,
-                                                    std::uint64_t max_entry_bytes) {
+                                                    std::uint64_t max_entry_bytes, std::uint64_t memory_times) {
     std::error_code ignored;
     if (!fs::is_regular_file(file, ignored))
         throw InputError(file, "is not a readable file", "Check the name of the file.");
@@ -90,7 +102,7 @@ std::map<std::string, std::string> read_tar_entries(const fs::path& file,
         if (!path || archive_entry_filetype(entry) != AE_IFREG) continue;
         const std::string name = fs::path(path).filename().string();
         if (!wanted(name)) continue;
-        if (!entries.emplace(name, read_entry(tar.get(), entry, file, max_entry_bytes)).second)
+        if (!entries.emplace(name, read_entry(tar.get(), entry, file, max_entry_bytes, memory_times)).second)
             throw DamagedFileError(file, "holds " + name + " twice", kCopyAgain);
     }
     if (!stream.damaged && status == ARCHIVE_EOF)

@@ -74,7 +74,7 @@ Volume volume_in_child(const fs::path& path, const std::function<Volume()>& pars
     ChildLimits limits{"volume"};
     limits.processor_s = static_cast<unsigned>(processor_limit_s(path));
     limits.wait_s = kMaxWait_s;
-    limits.when_too_large = "Give one series, or resample it to larger voxels.";
+    limits.when_too_large = "Close other programs, give one series alone, or resample the volume to larger voxels.";
     Parcel parcel = parse_in_child(path, limits, [&](Parcel& to) { put_volume(to, parse()); });
     try {
         return get_volume(parcel);

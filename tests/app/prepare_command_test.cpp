@@ -213,6 +213,8 @@ TEST_F(CommandsTest, AnAnonymousCaseHoldsNoNameIdOrPathOfTheSeries) {
         EXPECT_EQ(folder_says(root() / "named_case", text), is_uid) << text;
         EXPECT_EQ(run.out.find(text), std::string::npos) << text;
     }
+    EXPECT_TRUE(folder_says(root() / "named_case", "Operator"));
+    EXPECT_FALSE(folder_says(root() / "anonymous_case", "Operator")) << "who prepared it is a name, too";
     const auto listed = run_planlight(
         "prepare Mustermann --plan Mustermann.fcsv --voxel-mm 4 --out anonymous_list --anonymous --json", root());
     ASSERT_EQ(listed.exit_code, 0) << listed.err;

@@ -168,6 +168,19 @@ TEST(JudgeSkin, SaysThatTheDarkEndOfTheGreysWasCutOff) {
     EXPECT_FALSE(doubts(judged(blanked).skin, "dark end of the greys"));
 }
 
+/// A CT as pictures show it: -160 to 30 HU in 256 greys. Bone and brain are one grey and show no layers.
+TEST(JudgeSkin, ARefusedCtOfAWindowForPicturesIsCalledThat) {
+    Volume pictures = ct_of([](const Vector3d&, double) { return -1000; }, {105, 125, 115});
+    for (float& value : pictures.values) value = std::round(std::clamp((value + 160) / 190 * 255, 0.0F, 255.0F));
+    pictures.is_hu = false;
+    pictures.modality.clear();
+    const Judged head = judged(pictures);
+    ASSERT_TRUE(head.refused);
+    const std::string& finding = head.skin.refusals.front().finding;
+    EXPECT_NE(finding.find("show exactly the greatest value"), std::string::npos) << finding;
+    EXPECT_EQ(finding.find("stripped brain"), std::string::npos) << finding;
+}
+
 TEST(JudgeSkin, WhereTheVolumeEndsBelowTheCrownTheSidesAreAskedForScalp) {
     Volume part = mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); });
     part.size[2] = 42;  // up to 8 mm above the middle
