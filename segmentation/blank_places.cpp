@@ -11,6 +11,7 @@ namespace planlight {
 namespace {
 
 constexpr double kLeastShare = 0.01;
+constexpr double kNearBlank_voxels = 2;  // where a correction laid out anew, the end is blurred
 
 Mask blank_places(const Volume& volume, float blank) {
     const VoxelGrid grid{volume.size, {1, 1, 1}};
@@ -45,6 +46,17 @@ void forget_blank(Volume& volume, float blank) {
     const Mask places = blank_places(volume, blank);
     for (std::size_t v = 0; v < places.size(); ++v)
         if (places[v] && volume.values[v] == blank) volume.values[v] = std::numeric_limits<float>::quiet_NaN();
+}
+
+void flag_ends_at_blank(TriangleMesh& mesh, const Volume& volume, float blank) {
+    const Mask near = dilate(blank_places(volume, blank), {volume.size, {1, 1, 1}}, kNearBlank_voxels);
+    const Eigen::Affine3d voxel_from_ct = volume.ct_from_voxel.inverse();
+    tbb::parallel_for(std::size_t{0}, mesh.vertices_in_ct.size(), [&](std::size_t v) {
+        Eigen::Vector3i at = (voxel_from_ct * mesh.vertices_in_ct[v]).array().round().cast<int>();
+        for (int axis = 0; axis < 3; ++axis)
+            at[axis] = std::clamp(at[axis], 0, volume.size[static_cast<std::size_t>(axis)] - 1);
+        if (mesh.flags[v] == kSkin && near[volume.index(at.x(), at.y(), at.z())]) mesh.flags[v] = kCutPlane;
+    });
 }
 
 }  // namespace planlight

@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "planning_io/types/error.h"
+#include "segmentation/blank_places.h"
 #include "segmentation/blanked_edges.h"
 #include "segmentation/ct_greys.h"
 #include "segmentation/decimate_skin.h"
@@ -195,6 +196,7 @@ TriangleMesh triangulate_skin(const Volume& given, const SkinMask& mask, const S
     if (mirrored)
         for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
     flag_blanked_edges(mesh, given, mask.threshold_said);
+    if (mask.blank) flag_ends_at_blank(mesh, given, *mask.blank);
     smooth_lids(mesh);
     mend_normals(mesh);
     if (volume.modality == "MR") find_edges(mesh, given, volume, mask);

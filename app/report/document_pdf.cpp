@@ -57,9 +57,9 @@ struct LaidRow {
 
 class PdfWriter {
 public:
-    /// `share`: of their size, that pictures have.
-    PdfWriter(const Document& document, PaperSize paper, double share)
-        : document_(document), sheets_(document.title, document.foot, paper), share_(share) {}
+    /// `share`: of their size, that pictures have. `flowing`: no block begins a sheet because it is meant to.
+    PdfWriter(const Document& document, PaperSize paper, double share, bool flowing = false)
+        : document_(document), sheets_(document.title, document.foot, paper), share_(share), flowing_(flowing) {}
 
     std::size_t sheets() const { return sheets_.count(); }
     std::string bytes() { return sheets_.bytes(); }
@@ -129,7 +129,7 @@ public:
         sheets_.y -= 4;
     }
     void operator()(const NewSheet&) {
-        if (sheets_.room() < sheets_.whole_room()) sheets_.begin_sheet();
+        if (!flowing_ && sheets_.room() < sheets_.whole_room()) sheets_.begin_sheet();
     }
 
 private:
@@ -321,6 +321,7 @@ private:
     const Document& document_;
     PdfSheets sheets_;
     double share_;
+    bool flowing_;
     const DocumentBlock* next_ = nullptr;
 };
 
@@ -335,18 +336,20 @@ std::size_t sheets_wanted(const Document& document, std::size_t taken) {
 
 }  // namespace
 
-/// Pictures give way where that saves a sheet, as far as they can still be judged.
+/// Pictures give way where that saves a sheet, as far as they can still be judged; and then the places where sheets are
+/// meant to begin, which many warnings move.
 std::string pdf_of(const Document& document, PaperSize paper) {
     PdfWriter whole(document, paper, 1);
     whole.write();
     const std::size_t wanted = sheets_wanted(document, whole.sheets());
     if (wanted > 0 && whole.sheets() > wanted)
-        for (const double share : {0.9, 0.8, 0.7, 0.6}) {
-            if (share < 0.75 && !document.made_of_sheets) break;
-            PdfWriter smaller(document, paper, share);
-            smaller.write();
-            if (smaller.sheets() <= wanted) return smaller.bytes();
-        }
+        for (const bool flowing : {false, true})
+            for (const double share : {1.0, 0.9, 0.8, 0.7, 0.6}) {
+                if (!document.made_of_sheets && (flowing || share < 0.75)) break;
+                PdfWriter smaller(document, paper, share, flowing);
+                smaller.write();
+                if (smaller.sheets() <= wanted) return smaller.bytes();
+            }
     return whole.bytes();
 }
 

@@ -50,6 +50,39 @@ TEST(BlankBorder, CurvedByGradientCorrectionHidesNoHead) {
     EXPECT_LT(share_off(mr, segment_skin(mr)), 0.01);
 }
 
+/// A neck goes on below the head until a border of zeros ends it: what is found there is an end, not skin.
+TEST(BlankBorder, EndsANeckWhereItBegins) {
+    const double end_mm = -105, neck_mm = 55;
+    for (const bool curved : {false, true}) {
+        const auto depth = [&](const Vector3d& p) {
+            return std::max(depth_in_head(p), p.z() < 0 ? neck_mm - std::hypot(p.x(), p.y()) : -1e3);
+        };
+        const auto end_at = [&](const Vector3d& p) {
+            return end_mm + (curved ? 0.0006 * (p.x() * p.x() + p.y() * p.y()) : 0);
+        };
+        Volume mr = mr_of([&](const Vector3d& p) { return layered(depth(p)); }, {125, 145, 125}, 24);
+        for (int k = 0; k < mr.size[2]; ++k)
+            for (int j = 0; j < mr.size[1]; ++j)
+                for (int i = 0; i < mr.size[0]; ++i) {
+                    const Vector3d p = mr.ct_from_voxel * Vector3d(i, j, k);
+                    if (p.z() < end_at(p) || (p.cwiseAbs().array() > Vector3d(115, 130, 115).array()).any())
+                        mr.values[mr.index(i, j, k)] = 0;
+                }
+        const TriangleMesh skin = triangulate_skin(mr, segment_skin(mr));
+        std::size_t at_end = 0, told = 0, aside = 0, wrong = 0;
+        for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
+            const Vector3d& p = skin.vertices_in_ct[v];
+            if (std::abs(p.z() - end_at(p)) < 3 && depth(p) > 3)
+                ++at_end, told += skin.flags[v] != kSkin;
+            else if (p.z() > end_at(p) + 6)
+                ++aside, wrong += skin.flags[v] == kCutPlane;
+        }
+        ASSERT_GT(at_end, 1000u);
+        EXPECT_GT(static_cast<double>(told), 0.97 * static_cast<double>(at_end)) << curved;
+        EXPECT_LT(static_cast<double>(wrong), 0.002 * static_cast<double>(aside)) << curved;
+    }
+}
+
 TEST(BlankBorder, IsNoneWhereAirWasCutToZeroButForSpecks) {
     const auto cut = [](const Vector3d&, float value) { return value < 50 ? 0 : value; };
     const Volume mr = mr_head(cut);
