@@ -1,13 +1,13 @@
 // How soon a fault of the light is noticed, and whether it is named rightly: whole sessions in simulated rooms, with
 // faults drawn at random while the plan is on the skin.
-// measure_light_faults paper|modern FIRST_ROOM ROOMS DRAWS_A_FAULT [FAULT,FAULT...] [--list]
+// measure_light_faults paper|modern FIRST_ROOM ROOMS DRAWS_A_FAULT [FAULT,FAULT...] [--list] [--computing=MS]
 //
 // Faults: offset (the picture 0.5 mm aside), late (20 ms, the head moving), slip (1 mm of one marker), projector and
 // camera (turned by 0.05 degrees about an axis square to its sight), covered (no light), window (another picture),
 // cap (all markers 2 mm along the skin), good
 // (none, for 20 s). Each begins after a second of good light, is looked at until 0.8 s after it was noticed, 2.5 s at
 // most, and taken away again. Every fourth draw is with the head moving at up to 20 mm/s, all of them where the light
-// is late. Times are the room's.
+// is late. Times are the room's; from a frame to its picture it computes for 10 ms, or as long as told.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -104,8 +104,9 @@ const char* name_of(LightFault fault) {
 class Room {
 public:
     Room(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, simulation::Preset preset,
-         unsigned seed)
-        : random_(seed * 7919 + 3),
+         unsigned seed, std::chrono::milliseconds computing)
+        : computing_(computing),
+          random_(seed * 7919 + 3),
           rig_(volume, points_of(the_case.plan), room(preset, seed)),
           spoilt_(rig_.projector()),
           session_(the_case, drawing, rig_.calibration(), spoilt_, rig_.cameras(), rig_.clock(), settings()) {
@@ -152,7 +153,7 @@ private:
     }
     SessionSettings settings() {
         SessionSettings settings;
-        settings.while_computing = [this] { rig_.wait(10ms); };
+        settings.while_computing = [this] { rig_.wait(computing_); };
         return settings;
     }
     void move(bool moving) {
@@ -229,6 +230,7 @@ private:
         return skin ? skin->normal_in_ct : towards;
     }
 
+    std::chrono::milliseconds computing_;
     std::mt19937 random_;
     SimulatedRig rig_;
     Spoilt spoilt_;
@@ -247,6 +249,19 @@ struct Sums {
 int main(int argc, char** argv) {
     std::vector<std::string> words(argv + 1, argv + argc);
     const bool list = std::erase(words, "--list") > 0;
+    std::chrono::milliseconds computing = 10ms;
+    std::erase_if(words, [&](const std::string& word) {
+        constexpr std::string_view kName = "--computing=";
+        if (!word.starts_with(kName)) return false;
+        computing = std::chrono::milliseconds(std::stoi(word.substr(kName.size())));
+        return true;
+    });
+    if (!words.empty() && words[0] != "paper" && words[0] != "modern") {
+        fmt::print(stderr,
+                   "measure_light_faults paper|modern FIRST_ROOM ROOMS DRAWS_A_FAULT [FAULT,FAULT...] [--list] "
+                   "[--computing=MS]\n");
+        return 2;
+    }
     const std::string preset = !words.empty() ? words[0] : "paper";
     const int first = words.size() > 1 ? std::stoi(words[1]) : 1, rooms = words.size() > 2 ? std::stoi(words[2]) : 1,
               draws = words.size() > 3 ? std::stoi(words[3]) : 2;
@@ -266,7 +281,7 @@ int main(int argc, char** argv) {
     for (int k = 0; k < rooms; ++k) {
         Room room(volume, prepared.prepared, drawing,
                   preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern,
-                  static_cast<unsigned>(first + k));
+                  static_cast<unsigned>(first + k), computing);
         for (const std::string& fault : faults)
             for (int i = 0; i < draws; ++i) {
                 std::string right;
