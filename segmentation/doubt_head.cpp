@@ -15,7 +15,7 @@ namespace {
 constexpr double kLeastBall_mm = 40, kMostBall_mm = 100;  // newborn 45, adult with thick hair 85; a monkey's 38
 constexpr double kFewLayers_refused = 0.2, kFewLayers_masked = 0.45, kFewLayers_doubted = 0.5;
 constexpr double kFaintLayers = 0.85;  // of the vault: blurred averages show a faint layer all over, brains do not
-constexpr double kBrightEnd = 0.05;  // of the head at exactly the greatest value: its bone is more
+constexpr double kBrightEnd = 0.05;    // of the head at exactly the greatest value: its bone is more
 constexpr double kThinnestScalp_mm = 1.5;
 constexpr double kFaintInBlur = 0.35, kNoBrain_mm = 72;  // an adult's brain holds a ball of 65 mm
 constexpr double kBoneless_cm2 = 15;
@@ -96,8 +96,7 @@ SkinDoubt no_scalp(const Volume& volume, const SkinMask& mask, double layered_sh
             kGiveHead};
 }
 
-void judge_layers(const Volume& volume, const SkinMask& mask, bool air_is_blank, double faint_share,
-                  SkinJudgement& r) {
+void judge_layers(const Volume& volume, const SkinMask& mask, bool air_is_blank, double faint_share, SkinJudgement& r) {
     const bool hu = volume.is_hu;
     if (std::isnan(r.layered_share))
         return add(r.doubts,

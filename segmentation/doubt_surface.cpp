@@ -46,12 +46,14 @@ void judge_edges(const SkinMask& mask, SkinJudgement& r) {
     const std::string found = threshold_text(mask.threshold_said);
     const std::string unsure =
         mask.unsure_share < 1
-            ? fmt::format("{:.0f} % of the outline moves by more than 3 mm when the threshold is taken at 0.7 or 1.5 "
-                          "times what was found ({})",
-                          100 * mask.unsure_share, found)
-            : fmt::format("none of the outline stays where it is, or no air is left round it, when the threshold is "
-                          "taken at 0.7 times what was found ({})",
-                          found);
+            ? fmt::format(
+                  "{:.0f} % of the outline moves by more than 3 mm when the threshold is taken at 0.7 or 1.5 "
+                  "times what was found ({})",
+                  100 * mask.unsure_share, found)
+            : fmt::format(
+                  "none of the outline stays where it is, or no air is left round it, when the threshold is "
+                  "taken at 0.7 times what was found ({})",
+                  found);
     const std::string tries =
         fmt::format("Try `planlight prepare --threshold {}` and {}, and compare the pictures of the report.",
                     threshold_text(0.7 * mask.threshold_said), threshold_text(1.5 * mask.threshold_said));

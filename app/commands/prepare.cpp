@@ -138,7 +138,8 @@ PreparationReport report_of(Inputs& in, Preparation& done, bool anonymous, Progr
     release_spare_memory();
     add_views(done.prepared, done.drawing, pictures);
     if (!pictures.no_views.empty()) bar.warn(pictures.no_views);
-    PreparationReport report = preparation_report(done, done.drawing, removed, pictures, anonymous ? "" : operator_name());
+    PreparationReport report =
+        preparation_report(done, done.drawing, removed, pictures, anonymous ? "" : operator_name());
     release_spare_memory();
     bar.show("report", 1);
     return report;

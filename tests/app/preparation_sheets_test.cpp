@@ -47,9 +47,10 @@ protected:
     }
     static std::vector<std::string> sheets_with(int warnings, PaperSize paper) {
         Preparation done = done_;
-        for (int i = 0; i < warnings; ++i) done.prepared.warnings.push_back(fmt::format(fmt::runtime(kWarning), 20 + i));
-        return sheets_of(pdf_of(
-            preparation_report(done, done.drawing, removed_, pictures_, "An Operator").document, paper));
+        for (int i = 0; i < warnings; ++i)
+            done.prepared.warnings.push_back(fmt::format(fmt::runtime(kWarning), 20 + i));
+        return sheets_of(
+            pdf_of(preparation_report(done, done.drawing, removed_, pictures_, "An Operator").document, paper));
     }
     inline static Preparation done_;
     inline static PreparationPictures pictures_;

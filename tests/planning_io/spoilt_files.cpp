@@ -76,9 +76,8 @@ void add_damage(std::vector<VolumeCase>& list) {
         first[first.size() - 6] = static_cast<char>(first[first.size() - 6] ^ 1);
         return first + gzipped(whole.substr(50000));
     }));
-    list.push_back(file("NIfTI: bytes after the last gzip member", "goes on after the end", "head.nii.gz", [] {
-        return gzipped(nifti_bytes(nifti_header({}), {})) + std::string(512, '\0') + "x";
-    }));
+    list.push_back(file("NIfTI: bytes after the last gzip member", "goes on after the end", "head.nii.gz",
+                        [] { return gzipped(nifti_bytes(nifti_header({}), {})) + std::string(512, '\0') + "x"; }));
     list.push_back(file("NIfTI: gzip with a wrong checksum", "damaged", "head.nii.gz", [] {
         std::string bytes = gzipped(nifti_bytes(nifti_header({}), {}));
         bytes[bytes.size() - 6] = static_cast<char>(bytes[bytes.size() - 6] ^ 1);
