@@ -195,6 +195,13 @@ const std::set<std::string> kNotShown{
     "There is no soft tissue over the bone ({:.1f} mm): this is a dry skull or a phantom",
     "Give the CT or MR series of the whole head as the scanner made it; for a phantom or a dry skull use `planlight "
     "prepare --phantom`.",
+    "Whether scalp lies over bone cannot be told: {:.0f} % of the head show exactly the greatest value, as where a CT "
+    "was "
+    "saved through a window for pictures, which makes bone and all that is brighter one grey",
+    "Give the series in HU: its DICOM files, or converted without a window.",
+    "none of the outline stays where it is, or no air is left round it, when the threshold is taken at 0.7 times what "
+    "was "
+    "found ({})",
     "The skin cannot be told from what surrounds it: ", "{}the {} ({:.0f} square cm)"};
 
 /// A fault of the program's own, not for a person at the trolley: "capture_scan: stripes of ...".
