@@ -32,7 +32,7 @@ using PlistOwner = std::unique_ptr<void, void (*)(plist_t)>;
 constexpr const char* kSaveAgain = "Open the project in InVesalius 3 and save it again.";
 constexpr std::uint64_t kAxial = 1;
 constexpr std::uint64_t kMaxMatrixBytes = std::uint64_t{4} << 30;
-constexpr std::uint64_t kMemoryTimes = 3;  ///< int16 as they are stored, and as float
+constexpr std::uint64_t kMemoryTimes = 5;  ///< int16 as they are stored, as float, and that on its way to the parent
 constexpr double kPerpendicular = 1e-3;
 
 [[noreturn]] void damaged(const fs::path& file, const std::string& problem) {
