@@ -190,6 +190,7 @@ private:
     /// Light beside its place: the explanation that leaves least.
     void look_at_place() {
         std::vector<double> delays_s;
+        constexpr double kAlike = 0.02;  // a delay is one figure, a turn is three: explained alike, it is the delay
         constexpr double kEarliest_s = -0.04;  // light may also come earlier than told, as after a delay that went by
         for (double d = kEarliest_s; d <= settings_.most_delay_s; d += settings_.delay_step_s) delays_s.push_back(d);
         const auto recent = light_samples(facts_, now() - settings_.window, rig_, delays_s);
@@ -198,11 +199,12 @@ private:
         const double unexplained = left_mm2(recent, told);
         const TurnedProjector turned = fit_projector(recent);
         const double explained_by_turn = 1 - turned.left_mm2 / std::max(unexplained, 1e-9);
-        const auto [late, explained_by_delay] = best_delay(delays_s);
+        const auto [late, explained_by_delay, window] = best_delay(delays_s);
         const bool is_late = std::abs(late.middle_s()) >= settings_.least_delay_s &&
-                             late.effect_mm >= settings_.least_effect_mm && explained_by_delay > 0.5;
+                             late.effect_mm >= settings_.least_effect_mm && explained_by_delay > 0.5 &&
+                             explained_by_delay > explained_by_turn_since(now() - window) - kAlike;
         const bool is_turned = turned.size_mm >= settings_.least_off_mm && explained_by_turn > 0.5;
-        if (is_late && (!is_turned || explained_by_delay > explained_by_turn - 0.1)) {
+        if (is_late) {
             LightCause& cause = add(LightFault::late_picture, 1e3 * late.middle_s(), explained_by_delay);
             cause.low = 1e3 * late.low_s;
             cause.high = 1e3 * late.high_s;
@@ -217,9 +219,14 @@ private:
 
     /// The delay of that part of the last seconds which a delay explains best: it may have begun just now, and takes
     /// movement to be told.
-    std::pair<Lateness, double> best_delay(const std::vector<double>& delays_s) const {
+    struct BestDelay {
+        Lateness late;
+        double explained = 0;
+        Instant window{};
+    };
+    BestDelay best_delay(const std::vector<double>& delays_s) const {
         constexpr Instant kLeastSpan = std::chrono::milliseconds(250);
-        std::pair<Lateness, double> best{{}, 0};
+        BestDelay best;
         for (const Instant window : {settings_.least, settings_.window, 2 * settings_.window, settings_.long_window}) {
             const auto samples = light_samples(facts_, now() - window, rig_, delays_s);
             if (checks_since(now() - window) < settings_.least_checks) continue;
@@ -227,10 +234,17 @@ private:
             const Lateness late = fit_delay(samples, delays_s);
             const double explained = 1 - late.left_mm2 / std::max(unexplained, 1e-9);
             if (late.effect_mm >= settings_.least_effect_mm && late.frames > settings_.least_checks &&
-                late.span >= kLeastSpan && explained > best.second)
-                best = {late, explained};
+                late.span >= kLeastSpan && explained > best.explained)
+                best = {late, explained, window};
         }
         return best;
+    }
+
+    /// Of the frames that a delay is told by, lest one is judged by more of good light than the other.
+    double explained_by_turn_since(Instant from) const {
+        const auto samples = light_samples(facts_, from, rig_, {});
+        const double unexplained = left_mm2(samples, [](const LightSample& s) { return s.told_mm; });
+        return 1 - fit_projector(samples).left_mm2 / std::max(unexplained, 1e-9);
     }
 
     int checks_since(Instant from) const {

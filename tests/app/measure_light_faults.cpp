@@ -1,13 +1,15 @@
 // How soon a fault of the light is noticed, and whether it is named rightly: whole sessions in simulated rooms, with
 // faults drawn at random while the plan is on the skin.
-// measure_light_faults paper|modern FIRST_ROOM ROOMS DRAWS_A_FAULT [FAULT,FAULT...] [--list] [--computing=MS]
+// measure_light_faults paper|modern FIRST_ROOM ROOMS DRAWS_A_FAULT [FAULT,FAULT...] [--list] [--moving]
+// [--computing=MS]
 //
 // Faults: offset (the picture 0.5 mm aside), late (20 ms, the head moving), slip (1 mm of one marker), projector and
 // camera (turned by 0.05 degrees about an axis square to its sight), covered (no light), window (another picture),
 // cap (all markers 2 mm along the skin), good
 // (none, for 20 s). Each begins after a second of good light, is looked at until 0.8 s after it was noticed, 2.5 s at
 // most, and taken away again. Every fourth draw is with the head moving at up to 20 mm/s, all of them where the light
-// is late. Times are the room's; from a frame to its picture it computes for 10 ms, or as long as told.
+// is late or --moving is asked for. Times are the room's; from a frame to its picture it computes for 10 ms, or as long
+// as told.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -248,7 +250,7 @@ struct Sums {
 
 int main(int argc, char** argv) {
     std::vector<std::string> words(argv + 1, argv + argc);
-    const bool list = std::erase(words, "--list") > 0;
+    const bool list = std::erase(words, "--list") > 0, always_moving = std::erase(words, "--moving") > 0;
     std::chrono::milliseconds computing = 10ms;
     std::erase_if(words, [&](const std::string& word) {
         constexpr std::string_view kName = "--computing=";
@@ -259,7 +261,7 @@ int main(int argc, char** argv) {
     if (!words.empty() && words[0] != "paper" && words[0] != "modern") {
         fmt::print(stderr,
                    "measure_light_faults paper|modern FIRST_ROOM ROOMS DRAWS_A_FAULT [FAULT,FAULT...] [--list] "
-                   "[--computing=MS]\n");
+                   "[--moving] [--computing=MS]\n");
         return 2;
     }
     const std::string preset = !words.empty() ? words[0] : "paper";
@@ -285,7 +287,8 @@ int main(int argc, char** argv) {
         for (const std::string& fault : faults)
             for (int i = 0; i < draws; ++i) {
                 std::string right;
-                const auto outcome = room.draw(fault, i % 4 == 3, right);
+                const bool moving = always_moving || i % 4 == 3;
+                const auto outcome = room.draw(fault, moving, right);
                 Sums& sum = sums[fault];
                 if (!outcome) {
                     ++sum.not_good_before;
@@ -301,7 +304,7 @@ int main(int argc, char** argv) {
                 }
                 if (list)
                     fmt::print("room {} {} {}: {} after {:.2f} s, {} {}\n", first + k, fault,
-                               i % 4 == 3 || fault == "late" ? "moving" : "rest", outcome->named,
+                               moving || fault == "late" ? "moving" : "rest", outcome->named,
                                outcome->noticed_s.value_or(-1), outcome->dark ? "(dark)" : "", outcome->said);
                 std::fflush(stdout);
             }

@@ -154,7 +154,9 @@ SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSett
         for (std::size_t k = 0; k < direction.further.size(); ++k)
             check_fringes(samples, direction.further[k], fringes[k + 1], check);
         check_frequencies(samples, direction, fringes, check);
+        const std::size_t problems = check.problems.size();
         check_parity(samples, direction, fringes[0], check);
+        if (check.problems.size() == problems) check_offset(samples, direction, fringes[0], check);
         if (!patchy) check_order(samples, direction, changes, frames[0], check);
     }
     if (judges_itself(samples)) check_nesting(frames, samples, check);

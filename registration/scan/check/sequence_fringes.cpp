@@ -13,6 +13,8 @@
 namespace planlight::sequence {
 namespace {
 
+constexpr double kMostOffset = 0.05;  // of a period; one shift of sixteen is 0.06
+
 /// Sums of the frames' values, plain, squared and weighted by the sine and cosine of once and twice their shift.
 struct Sums {
     std::vector<float> plain, squares;
@@ -133,6 +135,60 @@ void check_parity(const Samples& s, const Direction& direction, const std::vecto
          fmt::format("the code of {} to {} contradicts {} to {}", s.name(direction.gray.front()),
                      s.name(direction.gray.back()), s.name(direction.phase.front()), s.name(direction.phase.back())),
          share_of(wrong, looked), SequenceProblem::Cause::fringes});
+}
+
+namespace {
+
+/// Whether the Gray code of a pixel has an odd number of ones; empty where more than one bit is unclear: by the border
+/// of two stripes the one that changes there may be.
+std::optional<bool> is_odd(const Samples& s, const Direction& direction, std::size_t i) {
+    bool odd = false;
+    int unclear = 0;
+    for (std::size_t k = 0; k < direction.gray.size(); ++k) {
+        const int difference = s.difference(direction, k, [&](std::size_t frame) { return int{s.here[frame][i]}; });
+        unclear += 3 * std::abs(difference) <= s.contrast[i];
+        odd ^= difference > 0;
+    }
+    return unclear > 1 ? std::nullopt : std::optional(odd);
+}
+
+}  // namespace
+
+std::optional<double> fringe_offset_px(const Samples& s, const Direction& direction,
+                                       const std::vector<Fringe>& fringes) {
+    if (direction.phase.size() < 3 || direction.gray.empty()) return std::nullopt;
+    constexpr std::size_t kBins = 16, kLeastInBin = 20;
+    const double half_px = s.stripes.phase_period_px / 2;
+    std::array<std::size_t, kBins> all{}, behind{};
+    for (std::size_t i = 0; i < s.lit; ++i) {
+        if (fringes[i].amplitude < 0.1 * s.contrast[i] + 2 * s.noise_grey) continue;
+        const auto odd = is_odd(s, direction, i);
+        if (!odd) continue;
+        const double cells = (fringes[i].phase * half_px / std::numbers::pi + 0.5) / half_px;
+        const double border = std::floor(cells + 0.5), aside = cells - border;  // -0.5 to 0.5 of a cell
+        const auto bin = std::min(kBins - 1, static_cast<std::size_t>((aside + 0.5) * kBins));
+        ++all[bin];
+        behind[bin] += *odd == (static_cast<int>(border) % 2 != 0);
+    }
+    double before = 0;
+    for (std::size_t bin = 0; bin < kBins; ++bin) {
+        if (all[bin] < kLeastInBin) return std::nullopt;
+        before += 1 - share_of(behind[bin], all[bin]);
+    }
+    return (before / kBins - 0.5) * half_px;
+}
+
+void check_offset(const Samples& s, const Direction& direction, const std::vector<Fringe>& fringes,
+                  SequenceCheck& check) {
+    const auto offset_px = fringe_offset_px(s, direction, fringes);
+    if (!offset_px || std::abs(*offset_px) < kMostOffset * s.stripes.phase_period_px) return;
+    check.problems.push_back(
+        {direction.phase[0],
+         fmt::format("the fringes of {} to {} lie {:.1f} projector pixels beside the code of {} "
+                     "to {}: another of them is the first, or something moved in between",
+                     s.name(direction.phase.front()), s.name(direction.phase.back()), std::abs(*offset_px),
+                     s.name(direction.gray.front()), s.name(direction.gray.back())),
+         1, SequenceProblem::Cause::fringes});
 }
 
 namespace {

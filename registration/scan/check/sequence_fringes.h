@@ -27,6 +27,17 @@ void check_fringes(const Samples& samples, const std::vector<std::size_t>& phase
 void check_parity(const Samples& samples, const Direction& direction, const std::vector<Fringe>& fringes,
                   SequenceCheck& check);
 
+/// How far the fringes lie beside the Gray code, projector pixels: where the code really changes, by the fringes' own
+/// measure, as a mean over all borders of its finest stripes (blur and gamma are alike on both sides of one). Empty
+/// without either, and where too little is seen near the borders.
+std::optional<double> fringe_offset_px(const Samples& samples, const Direction& direction,
+                                       const std::vector<Fringe>& fringes);
+
+/// Fringes that begin with another shift than they should lie beside the code by a part of its stripe, which
+/// `check_parity` does not see; believed, they move the light by as much.
+void check_offset(const Samples& samples, const Direction& direction, const std::vector<Fringe>& fringes,
+                  SequenceCheck& check);
+
 /// Fringes of several frequencies must agree about a place.
 void check_frequencies(const Samples& samples, const Direction& direction,
                        const std::vector<std::vector<Fringe>>& fringes, SequenceCheck& check);
