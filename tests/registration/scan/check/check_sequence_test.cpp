@@ -180,6 +180,22 @@ TEST(CheckSequence, SwappedFineBitsAreNoticed) {
     }
 }
 
+/// Fringes named from their second shift on are fringes in order, an eighth of a period beside the code.
+TEST(CheckSequence, FringesThatBeginWithAnotherShiftAreNoticed) {
+    const auto sequence = stripe_sequence(head().stripes);
+    for (const bool along_rows : {false, true}) {
+        std::vector<std::size_t> phases;
+        for (std::size_t i = 0; i < sequence.size(); ++i)
+            if (sequence[i].kind == StripePattern::Kind::phase && sequence[i].along_rows == along_rows)
+                phases.push_back(i);
+        std::vector<GrayImage> frames = head().frames;
+        for (std::size_t k = 0; k < phases.size(); ++k)
+            frames[phases[k]] = head().frames[phases[(k + 1) % phases.size()]];
+        EXPECT_NE(said(check_sequence(frames, head().stripes)).find("beside the code"), std::string::npos)
+            << along_rows;
+    }
+}
+
 TEST(CheckSequence, FramesThatDoNotFitTheSequenceAreAFaultOfTheCaller) {
     auto patterns = stripe_sequence(head().stripes);
     patterns[0].kind = StripePattern::Kind::black;
