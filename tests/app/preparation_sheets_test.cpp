@@ -15,7 +15,7 @@ constexpr const char* kWarning =
     "Over {} square cm (most at left ear) what lies just under the surface is lighter than skin and fat: hair, a "
     "strap, a cloth or a cover lies on the skin there. Look at the skin in the report before you use it.";
 
-/// Of a head of 1.5 mm voxels, with pictures of the sizes that slices and views have.
+/// Six holes on the analytic head, with pictures of the sizes that slices and views have.
 class PreparationSheets : public testing::Test {
 protected:
     static void SetUpTestSuite() {
