@@ -345,6 +345,7 @@ std::string pdf_of(const Document& document, PaperSize paper) {
     if (wanted > 0 && whole.sheets() > wanted)
         for (const bool flowing : {false, true})
             for (const double share : {1.0, 0.9, 0.8, 0.7, 0.6}) {
+                if (share == 1 && !flowing) continue;  // that is the whole
                 if (!document.made_of_sheets && (flowing || share < 0.75)) break;
                 PdfWriter smaller(document, paper, share, flowing);
                 smaller.write();

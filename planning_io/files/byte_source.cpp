@@ -19,7 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCopyAgain = "Copy or export the file again.";
 constexpr const char* kTooLarge = "Close other programs, or resample the volume to larger voxels.";
-constexpr std::uint64_t kMostInflation = 1040;  // deflate's limit is 1032 : 1
 constexpr std::size_t kBlock = std::size_t{1} << 18;
 
 template <class T>

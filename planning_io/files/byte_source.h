@@ -9,6 +9,8 @@
 
 namespace planlight {
 
+inline constexpr std::uint64_t kMostInflation = 1040;  ///< of what is packed; deflate's limit is 1032 : 1
+
 enum class Packing { none, deflate };  ///< deflate: gzip (of any number of members) or zlib, with their checksums
 
 /// The bytes of a file from `offset` on, unpacked as they are read. Throws InputError when it cannot be opened.

@@ -31,7 +31,6 @@ using PlistOwner = std::unique_ptr<void, void (*)(plist_t)>;
 
 constexpr const char* kSaveAgain = "Open the project in InVesalius 3 and save it again.";
 constexpr std::uint64_t kAxial = 1;
-constexpr std::uint64_t kMaxMatrixBytes = std::uint64_t{4} << 30;
 constexpr std::uint64_t kMemoryTimes = 5;  ///< int16 as they are stored, as float, and that on its way to the parent
 constexpr double kPerpendicular = 1e-3;
 
@@ -180,7 +179,7 @@ bool add_triangles(vtkCellArray& cells, bool strips, vtkIdType points, TriangleM
 Volume read_invesalius_volume(const fs::path& file) {
     static const std::string kUsualName = "matrix.dat";
     const auto read = [&](const std::function<bool(const std::string&)>& wanted) {
-        return read_tar_entries(file, wanted, kMaxMatrixBytes, kMemoryTimes);
+        return read_tar_entries(file, wanted, kMemoryTimes);
     };
     Entries entries = read([](const std::string& name) { return is_plist(name) || name == kUsualName; });
     const MatrixHeader header = read_header(entries, file);

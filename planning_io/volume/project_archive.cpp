@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "planning_io/files/byte_source.h"
 #include "planning_io/files/memory_need.h"
 #include "planning_io/types/error.h"
 
@@ -18,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMaxInflatedBytes = std::uint64_t{16} << 30;
-constexpr std::uint64_t kMostInflation = 1040;  // deflate's limit is 1032 : 1
 constexpr const char* kTooLarge = "Close other programs, or resample the volume to larger voxels.";
 constexpr const char* kCopyAgain = "Copy the project again from where it came from.";
 
@@ -83,7 +83,7 @@ std::string read_entry(archive* tar, archive_entry* entry, const fs::path& file,
 
 std::map<std::string, std::string> read_tar_entries(const fs::path& file,
                                                     const std::function<bool(const std::string&)>& wanted,
-                                                    std::uint64_t max_entry_bytes, std::uint64_t memory_times) {
+                                                    std::uint64_t memory_times, std::uint64_t max_entry_bytes) {
     std::error_code ignored;
     if (!fs::is_regular_file(file, ignored))
         throw InputError(file, "is not a readable file", "Check the name of the file.");

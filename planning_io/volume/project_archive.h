@@ -15,7 +15,7 @@ namespace planlight {
 /// exit code 7 when less memory is free than `memory_times` an entry's size, which is what using it takes.
 std::map<std::string, std::string> read_tar_entries(const std::filesystem::path& file,
                                                     const std::function<bool(const std::string& name)>& wanted,
-                                                    std::uint64_t max_entry_bytes = std::uint64_t{4} << 30,
-                                                    std::uint64_t memory_times = 1);
+                                                    std::uint64_t memory_times = 1,
+                                                    std::uint64_t max_entry_bytes = std::uint64_t{4} << 30);
 
 }  // namespace planlight

@@ -12,9 +12,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The egg of `depth_in_head` as an MR shows it in noisy air, with `spoil` done to each value by where it lies.
-Volume mr_head(const std::function<float(const Vector3d& place, float value)>& spoil) {
-    Volume mr = mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); }, {125, 145, 125}, 24);
+/// The egg of `depth_in_head`, or what has another depth, as an MR shows it in noisy air, with `spoil` done to each
+/// value by where it lies.
+Volume mr_head(
+    const std::function<float(const Vector3d& place, float value)>& spoil,
+    const std::function<double(const Vector3d&)>& depth = [](const Vector3d& p) { return depth_in_head(p); }) {
+    Volume mr = mr_of([&](const Vector3d& p) { return layered(depth(p)); }, {125, 145, 125}, 24);
     for (int k = 0; k < mr.size[2]; ++k)
         for (int j = 0; j < mr.size[1]; ++j)
             for (int i = 0; i < mr.size[0]; ++i) {
@@ -60,14 +63,10 @@ TEST(BlankBorder, EndsANeckWhereItBegins) {
         const auto end_at = [&](const Vector3d& p) {
             return end_mm + (curved ? 0.0006 * (p.x() * p.x() + p.y() * p.y()) : 0);
         };
-        Volume mr = mr_of([&](const Vector3d& p) { return layered(depth(p)); }, {125, 145, 125}, 24);
-        for (int k = 0; k < mr.size[2]; ++k)
-            for (int j = 0; j < mr.size[1]; ++j)
-                for (int i = 0; i < mr.size[0]; ++i) {
-                    const Vector3d p = mr.ct_from_voxel * Vector3d(i, j, k);
-                    if (p.z() < end_at(p) || (p.cwiseAbs().array() > Vector3d(115, 130, 115).array()).any())
-                        mr.values[mr.index(i, j, k)] = 0;
-                }
+        const auto ended = [&](const Vector3d& p, float value) {
+            return p.z() < end_at(p) || (p.cwiseAbs().array() > Vector3d(115, 130, 115).array()).any() ? 0 : value;
+        };
+        const Volume mr = mr_head(ended, depth);
         const TriangleMesh skin = triangulate_skin(mr, segment_skin(mr));
         std::size_t at_end = 0, told = 0, aside = 0, wrong = 0;
         for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
