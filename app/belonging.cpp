@@ -141,9 +141,16 @@ void check_rig(const RegistrationResult& match, const RigCalibration& rig, const
 }
 
 void check_poses(const std::optional<PosesOrigin>& origin, const RegistrationResult& match, const RigCalibration& rig,
-                 const fs::path& file, std::vector<std::string>& unknown) {
+                 const fs::path& file, bool confirmed, std::vector<std::string>& unknown) {
+    const auto on_a_persons_word = [&](const std::string& sentence) {
+        if (!confirmed)
+            throw CheckFailedError(sentence,
+                                   "Track the frames with `planlight track --capture` of the scan that was matched, or "
+                                   "look at the light on landmarks and give --confirmed.");
+        unknown.push_back(sentence);
+    };
     if (!origin) {
-        unknown.push_back(
+        on_a_persons_word(
             fmt::format("{} does not say with which rig and from which scan its poses are", file.string()));
         return;
     }
@@ -153,7 +160,7 @@ void check_poses(const std::optional<PosesOrigin>& origin, const RegistrationRes
                          fmt::format("holds poses of {}, and this is {}", words_of(origin->calibrated), words_of(here)),
                          "Track the frames with this rig.json.");
     if (origin->capture_hash.empty())
-        unknown.push_back(
+        on_a_persons_word(
             fmt::format("the poses of {} begin at its first frame, not at a scan: they are right only if the patient "
                         "had not moved since the scan",
                         file.string()));

@@ -42,9 +42,10 @@ void check_case(const RegistrationResult& match, const Case& the_case, const std
 void check_rig(const RegistrationResult& match, const RigCalibration& rig, const std::filesystem::path& file,
                const std::filesystem::path& rig_file, std::vector<std::string>& unknown);
 
-/// As `check_case`, for poses: they must follow this match, on this rig.
+/// As `check_case`, for poses: they must follow this match, on this rig. Where they do not say so, or begin at the
+/// first of their frames instead of at a scan, CheckFailedError, or a warning where `confirmed` is said.
 void check_poses(const std::optional<PosesOrigin>& origin, const RegistrationResult& match, const RigCalibration& rig,
-                 const std::filesystem::path& file, std::vector<std::string>& unknown);
+                 const std::filesystem::path& file, bool confirmed, std::vector<std::string>& unknown);
 
 /// The rig that the light of a match is to be drawn with: as the scan found it. Throws CheckFailedError where it may
 /// not be trusted, or where nothing is known of it and `confirmed` is not said.

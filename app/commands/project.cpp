@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "app/belonging.h"
 #include "app/case_model.h"
@@ -25,7 +26,7 @@ namespace {
 
 struct ProjectOptions {
     Path case_folder, rig, registration, poses, out;
-    int frame = -1;  ///< of the poses; -1: the last
+    std::optional<int> frame;  ///< of the poses; empty: the last
     std::string surgeon, item, others = "dim";
     bool confirmed = false, json = false;
 };
@@ -35,7 +36,7 @@ RigidTransform pose_to_draw(const ProjectOptions& options) {
     if (options.poses.empty()) return RigidTransform::Identity();
     const auto poses = read_poses(options.poses);
     const int last = static_cast<int>(poses.size()) - 1;
-    const int frame = options.frame < 0 ? last : options.frame;
+    const int frame = options.frame.value_or(last);
     if (frame < 0 || frame > last)
         throw InputError(options.poses, fmt::format("there is no frame {} (the file has {})", frame, poses.size()),
                          "Give --frame between 0 and the number of frames less one.");
@@ -69,7 +70,7 @@ void check_belonging(const ProjectOptions& options, const Case& the_case, const 
     check_case(registration, the_case, options.registration, unknown);
     check_rig(registration, rig, options.registration, options.rig, unknown);
     if (!options.poses.empty())
-        check_poses(read_poses_origin(options.poses), registration, rig, options.poses, unknown);
+        check_poses(read_poses_origin(options.poses), registration, rig, options.poses, options.confirmed, unknown);
     for (const std::string& what : unknown) warn(what);
 }
 
@@ -165,8 +166,11 @@ Run add_project(CLI::App& app) {
     sub->add_option("--rig", o.rig, "rig.json")->required();
     sub->add_option("--registration", o.registration, "registration.json")->required();
     sub->add_option("--poses", o.poses, "poses.json (default: the patient has not moved since the scan)");
-    sub->add_option("--frame", o.frame, "Which pose (default: the last)");
-    sub->add_flag("--confirmed", o.confirmed, "The overlay was looked at on landmarks (for the verdict `ask`)");
+    sub->add_option("--frame", o.frame, "Which pose, from 0 (default: the last)")->check(CLI::Range(0, 1000000000));
+    sub->add_flag(
+        "--confirmed", o.confirmed,
+        "The overlay was looked at on landmarks (for the verdict `ask`, and for files that do not say of which "
+        "scan they are)");
     surgeon_option(sub, o.surgeon);
     auto* item = sub->add_option("--item", o.item, "Name of the item that is worked on: bright, with its whole label");
     sub->add_option("--others", o.others, "The other items then: dim or hidden")

@@ -197,14 +197,14 @@ Run add_review(CLI::App& app) {
         "written");
     sub->add_option("--at", o.recorded.at_s,
                     "Of a recording: picture of the frame nearest to so many seconds (with --show: begin there)")
-        ->check(CLI::NonNegativeNumber);
+        ->check(CLI::Range(0.0, 1e6));
     sub->add_option(
         "--case", o.recorded.case_folder,
         "Of a recording, with --at or --show: its case, to lay the plan over the pictures and to say how far off its "
         "light was at each place (default: where it was when it was recorded)");
     sub->add_option("--clip", o.recorded.clip_s, "Of a recording: a PNG for each frame kept from .. to .. seconds")
         ->expected(2)
-        ->check(CLI::NonNegativeNumber);
+        ->check(CLI::Range(0.0, 1e6));
     language_option(sub, o.recorded.language);
     theme_option(sub, o.recorded.theme);
     json_flag(sub, o.json);

@@ -72,6 +72,7 @@ int run_simulate(const SimulateOptions& options) {
     room.seed = options.seed;
     room.things = things_of(options);
     room.wet = options.wet;
+    room.projector_delay = from_seconds(options.projector_delay_ms / 1e3);
     room.light.whole_exposure = !options.serve.empty();  // as real cameras see it
     simulation::SimulatedRig rig(volume, points_of(plan), room);
     if (!options.serve.empty()) return run_simulate_served(options, rig);
@@ -152,6 +153,10 @@ Run add_simulate(CLI::App& app) {
     sub->add_option("--wet", o.wet, "Wet skin: 0 dry to 1, with the highlights of a film of water")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 1.0));
+    sub->add_option("--projector-delay-ms", o.projector_delay_ms,
+                    "From the order of a picture, served: its standing on the monitor, to its light")
+        ->capture_default_str()
+        ->check(CLI::Range(10.0, 1000.0));
     auto* serve = sub->add_option(
         "--serve", o.serve,
         "Serve the room as hardware until Ctrl-C: two GigE Vision cameras, and the light of this monitor; "

@@ -32,6 +32,7 @@ int run_simulate_board(const SimulateOptions& options) {
     settings.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     settings.seed = options.seed;
     settings.poses = options.poses;
+    settings.projector_delay = from_seconds(options.projector_delay_ms / 1e3);
     settings.whole = board.kind == BoardSpec::Kind::chessboard;
     settings.light.whole_exposure = !options.serve.empty();  // as real cameras see it
     simulation::SimulatedBoardRoom room(printed(board), settings);

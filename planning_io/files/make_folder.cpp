@@ -6,9 +6,7 @@ namespace planlight {
 namespace {
 
 void check_made(const std::filesystem::path& folder, const std::error_code& fault) {
-    if (fault)
-        throw DiskRefusal(folder, "cannot be made: " + fault.message(),
-                          "Check the free space of its disk and the permissions of the folder that it lies in.", fault);
+    if (fault) throw DiskRefusal(folder, "cannot be made: " + fault.message(), remedy_of_unwritable(fault), fault);
 }
 
 }  // namespace

@@ -20,16 +20,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kDiskRemedy = "Check the free space and the permissions of the folder, then write again.";
-
 [[noreturn]] void refuse(const fs::path& file, const std::string& doing) {
     const int code = errno;
     std::error_code ignored;
     if (code == ENOENT && !fs::exists(file.has_parent_path() ? file.parent_path() : fs::path("."), ignored))
         throw DiskError(file, doing + ": its folder does not exist",
                         "Make the folder " + file.parent_path().string() + " first.");
-    throw DiskRefusal(file, doing + (code ? std::string(": ") + std::strerror(code) : std::string()), kDiskRemedy,
-                      std::error_code(code, std::generic_category()));
+    const std::error_code why(code, std::generic_category());
+    throw DiskRefusal(file, doing + (code ? std::string(": ") + std::strerror(code) : std::string()),
+                      remedy_of_unwritable(why), why);
 }
 
 /// A new empty file (or folder) beside `file`, with those of the permissions `mode` that the user's umask gives.

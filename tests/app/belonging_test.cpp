@@ -130,16 +130,24 @@ TEST(Belonging, AnotherRigCaseOrScanIsRefusedAndWhatIsNotSaidIsSaid) {
     moved.left_camera.focal_x += 1e-9;
     EXPECT_THROW(check_rig(match, moved, "m", "r", unknown), InputError);
     PosesOrigin poses{match.rig->calibrated, "a capture", match.rig->rig};
-    EXPECT_NO_THROW(check_poses(poses, match, test::example_rig(), "p", unknown));
+    const auto poses_are_checked = [&](const std::optional<PosesOrigin>& origin, bool confirmed) {
+        check_poses(origin, match, test::example_rig(), "p", confirmed, unknown);
+    };
+    EXPECT_NO_THROW(poses_are_checked(poses, false));
     EXPECT_TRUE(unknown.empty());
     poses.rig.left_camera = changed(poses.rig.left_camera, DeviceChange::Unit(1) * 1e-3);
-    EXPECT_THROW(check_poses(poses, match, test::example_rig(), "p", unknown), InputError);
+    EXPECT_THROW(poses_are_checked(poses, true), InputError);
     poses = {match.rig->calibrated, "another capture", match.rig->rig};
-    EXPECT_THROW(check_poses(poses, match, test::example_rig(), "p", unknown), InputError);
-    check_poses(std::nullopt, match, test::example_rig(), "p", unknown);
+    EXPECT_THROW(poses_are_checked(poses, true), InputError);
+    poses.capture_hash.clear();  // they begin at their first frame
+    EXPECT_THROW(poses_are_checked(poses, false), CheckFailedError);
+    EXPECT_THROW(poses_are_checked(std::nullopt, false), CheckFailedError);
+    EXPECT_TRUE(unknown.empty());
+    poses_are_checked(poses, true);
+    poses_are_checked(std::nullopt, true);
     check_rig(RegistrationResult{}, test::example_rig(), "m", "r", unknown);
     check_case(RegistrationResult{}, a_case(), "m", unknown);
-    EXPECT_EQ(unknown.size(), 3u);
+    EXPECT_EQ(unknown.size(), 4u);
 }
 
 }  // namespace

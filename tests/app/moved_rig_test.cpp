@@ -152,8 +152,9 @@ TEST_F(MovedRig, FilesOfOthersAreRefusedWithBothNames) {
                               "poses of rig");
     const auto other = run("track room/frames --rig room/rig.json --out first-frame.json");
     ASSERT_EQ(other.exit_code, 0) << other.err;
-    const auto drawn =
-        run("project case --rig room/rig.json --registration good.json --poses first-frame.json --out lit.png");
+    const std::string first_frame = "case --rig room/rig.json --registration good.json --poses first-frame.json";
+    expect_one_clear_sentence(project(first_frame), 6, "begin at its first frame");
+    const auto drawn = run("project " + first_frame + " --confirmed --out lit.png");
     EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
     EXPECT_NE(drawn.err.find("begin at its first frame"), std::string::npos) << drawn.err;
     expect_one_clear_sentence(run("review case2 --registration good.json --picture never.png"), 3,
@@ -196,8 +197,11 @@ TEST_F(MovedRig, AnEditedMatchAndLightThatFallsNowhereAreRefused) {
                                    {"predicted_error_mm", 0.1},
                                    {"reason", ""}}});
     std::ofstream(root() / "away.json") << poses;
-    const auto dark =
-        run("project case --rig room/rig.json --registration good.json --poses away.json --out never.png");
+    const std::string away =
+        "project case --rig room/rig.json --registration good.json --poses away.json --out never.png";
+    expect_one_clear_sentence(run(away), 6, "does not say with which rig and from which scan its poses are");
+    EXPECT_EQ(run(away + " --confirmed --frame -1").exit_code, 2) << "there is none before the first";
+    const auto dark = run(away + " --confirmed");
     EXPECT_EQ(dark.exit_code, 6) << dark.err;
     EXPECT_NE(dark.err.find("nothing of the plan lies in the projector's light"), std::string::npos) << dark.err;
     EXPECT_FALSE(fs::exists(root() / "never.png"));

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 
+#include "planning_io/files/disk_refusal.h"
 #include "planning_io/files/keep_to_owner.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "tests/support/test_data.h"
@@ -36,6 +39,22 @@ TEST(SafeWrite, AFailedWriteLeavesTheOldFileAndNothingElse) {
     EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
     EXPECT_THROW(read_whole(folder.path()), InputError);
     EXPECT_THROW(read_whole(folder.path() / "none"), InputError);
+}
+
+TEST(SafeWrite, TheRemedyIsThatOfTheFault) {
+    const test::TemporaryFolder folder;
+    const fs::path too_long = folder.path() / std::string(300, 'x');
+    for (const auto& write : {std::function<void()>([&] { write_safely(too_long, "x"); }),
+                              std::function<void()>([&] { make_folder(too_long); })}) {
+        try {
+            write();
+            FAIL() << "a name of 300 characters";
+        } catch (const DiskError& error) {
+            EXPECT_EQ(error.remedy, "Choose a shorter name.");
+        }
+    }
+    EXPECT_STREQ(remedy_of_unwritable(std::make_error_code(std::errc::read_only_file_system)),
+                 "This disk can only be read: name a folder on another one.");
 }
 
 TEST(SafeWrite, AFileForItsOwnerIsSoFromItsFirstByteOnAlsoInPlaceOfOneForAll) {
