@@ -7,9 +7,11 @@
 #include <cmath>
 #include <limits>
 
+#include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/files/content_hash.h"
 #include "planning_io/plan/plan_file.h"
+#include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -177,6 +179,18 @@ void check_poses(const std::optional<PosesOrigin>& origin, const RegistrationRes
         throw InputError(file, "was tracked with cameras that stand elsewhere than the scan found them",
                          "Track the frames with `planlight track --capture` or `track --registration` of the scan that "
                          "was matched.");
+}
+
+PointCloud read_cloud_of(const RegistrationResult& match, const fs::path& cloud, const fs::path& file) {
+    std::vector<std::string> comments;
+    PointCloud points = read_cloud(cloud, {1, true}, &comments);
+    const auto rig = rig_state_in(comments, cloud);
+    if (rig && match.rig && !match.rig->capture_hash.empty() && rig->capture_hash != match.rig->capture_hash)
+        throw InputError(cloud,
+                         fmt::format("is the scan of capture {}, and {} is the match of capture {}",
+                                     begin_of(rig->capture_hash), file.string(), begin_of(match.rig->capture_hash)),
+                         "Name the cloud that was matched.");
+    return points;
 }
 
 RigCalibration rig_of_light(const RegistrationResult& match, const RigCalibration& rig, bool confirmed) {

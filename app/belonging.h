@@ -47,6 +47,11 @@ void check_rig(const RegistrationResult& match, const RigCalibration& rig, const
 void check_poses(const std::optional<PosesOrigin>& origin, const RegistrationResult& match, const RigCalibration& rig,
                  const std::filesystem::path& file, bool confirmed, std::vector<std::string>& unknown);
 
+/// The cloud of a match, rig. Throws InputError where it says that it is of another scan than `match`, read from
+/// `file`.
+PointCloud read_cloud_of(const RegistrationResult& match, const std::filesystem::path& cloud,
+                         const std::filesystem::path& file);
+
 /// The rig that the light of a match is to be drawn with: as the scan found it. Throws CheckFailedError where it may
 /// not be trusted, or where nothing is known of it and `confirmed` is not said.
 RigCalibration rig_of_light(const RegistrationResult& match, const RigCalibration& rig, bool confirmed);

@@ -48,9 +48,8 @@ void keep_freed_memory() {
 /// What runs for hours hands large blocks back at once: kept, small things come to lie between them, and what is kept
 /// grows by a megabyte a minute.
 void hand_large_blocks_back() {
-    constexpr int kLarge_bytes = 256 << 10;  // every camera's picture
+    constexpr int kLarge_bytes = 256 << 10;  // less than the picture of a camera
     mallopt(M_MMAP_THRESHOLD, kLarge_bytes);
-    mallopt(M_ARENA_MAX, 1);
 }
 
 int run_command(const CLI::App& command, const Run& run, const ConsoleSettings& console, const std::string& line) {

@@ -66,6 +66,12 @@ ExportedOperation operation_of(const ExportOptions& options, const Case& the_cas
         operation.match = read_registration(file);
         if (operation.match.verdict == Verdict::no)
             throw InputError(file, "says that the patient was not found", "Name a match that may be used.");
+        operation.confirmed = operation.match.verdict == Verdict::yes;
+        if (!operation.confirmed)
+            warn(
+                fmt::format("the match was not sure, and nothing says that somebody looked at the light ({}): what is "
+                            "written calls it not confirmed",
+                            fmt::join(operation.match.reasons, "; ")));
     }
     std::vector<std::string> unknown;
     check_case(operation.match, the_case, file, unknown);
@@ -75,7 +81,7 @@ ExportedOperation operation_of(const ExportOptions& options, const Case& the_cas
         warn("the scan of this match is not in " + (options.case_folder / kRegistrationsFolder).string() +
              ": it is left out");
     else
-        operation.cloud = read_cloud(cloud, {1, true});
+        operation.cloud = read_cloud_of(operation.match, cloud, file);
     return operation;
 }
 

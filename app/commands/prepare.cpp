@@ -74,6 +74,11 @@ void make_anonymous(Inputs& in, const PrepareOptions& options) {
     std::vector<Path> of_plan = options.risk;
     of_plan.push_back(options.plan);
     leave_out_names(in.plan.notes, of_plan);
+    std::vector<RiskStructure>& structures = in.plan.plan.risk_structures;
+    for (std::size_t i = 0; i < structures.size(); ++i)
+        for (const Path& file : options.risk)
+            if (structures[i].name.starts_with(plan_name_of(file)))
+                structures[i].name = fmt::format("structure {}", i + 1);
     if (in.surface) leave_out_names(in.surface->notes, {options.surface});
 }
 

@@ -54,19 +54,6 @@ std::shared_ptr<const PointCloud> cloud_of(const ReviewOptions& options) {
     return std::make_shared<PointCloud>(read_cloud(options.cloud, {1, true}));
 }
 
-/// The cloud of another scan would be shown where this match has it.
-void check_cloud(const RegistrationResult& found, const ReviewOptions& options) {
-    std::vector<std::string> comments;
-    read_cloud(options.cloud, {1, true}, &comments);
-    const auto rig = rig_state_in(comments, options.cloud);
-    if (rig && found.rig && !found.rig->capture_hash.empty() && rig->capture_hash != found.rig->capture_hash)
-        throw InputError(options.cloud,
-                         "is the scan of capture " + rig->capture_hash.substr(0, 8) + ", and " +
-                             options.registration.string() + " is the match of capture " +
-                             found.rig->capture_hash.substr(0, 8),
-                         "Name the cloud that was matched.");
-}
-
 /// The window until landmarks are used or it is closed; what was clicked is kept either way.
 int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, const PointCloud& cloud,
                   OperatorModel model) {
@@ -116,7 +103,7 @@ int run_review(const ReviewOptions& options) {
         found = read_registration(options.registration);
         std::vector<std::string> unknown;
         check_case(*found, the_case, options.registration, unknown);
-        if (!options.cloud.empty()) check_cloud(*found, options);
+        if (!options.cloud.empty()) read_cloud_of(*found, options.cloud, options.registration);
         for (const std::string& what : unknown) warn(what);
         show_match(the_case, *found, cloud, model);
         set_status(*found, model);

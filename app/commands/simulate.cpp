@@ -19,6 +19,7 @@
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
 #include "registration/simulation/simulated_rig.h"
+#include "segmentation/skin_threshold.h"
 
 namespace planlight {
 namespace {
@@ -51,12 +52,26 @@ std::vector<StereoFrame> record_frames(simulation::SimulatedRig& rig, const Simu
     return frames;
 }
 
+/// The rig of real devices is not to be lost to a simulated room.
+void check_folder(const Path& folder, bool served) {
+    std::error_code ignored;
+    const auto is_there = [&](const char* name) { return std::filesystem::exists(folder / name, ignored); };
+    for (const char* name : {"rig.json", "room.json"})
+        if (is_there(name) && !is_there("truth.json"))
+            throw InputError(folder, fmt::format("holds a {} that is of no simulated room", name),
+                             "Name a new folder with --out.");
+    for (const char* name : {"capture", "captures"})
+        if (!served && is_there(name) && !std::filesystem::is_empty(folder / name, ignored))
+            throw InputError(folder / name, "exists already and is not empty", "Name a new folder with --out.");
+}
+
 int run_simulate(const SimulateOptions& options) {
     if (options.addresses.size() != 2)
         throw Error(
             ExitCode::usage,
             fmt::format("--addresses has {} of the two that are wanted, one for each camera", options.addresses.size()),
             "Give --addresses 127.0.0.1,127.0.0.2.");
+    check_folder(options.out, !options.serve.empty());
     if (!options.board.empty()) return run_simulate_board(options);
     if (options.volume.empty())
         throw Error(ExitCode::usage, "neither a patient nor a board is given",
@@ -71,6 +86,7 @@ int run_simulate(const SimulateOptions& options) {
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
     room.things = things_of(options);
+    if (!volume.is_hu) room.skin_threshold_hu = skin_threshold(volume);
     room.wet = options.wet;
     room.projector_delay = from_seconds(options.projector_delay_ms / 1e3);
     room.light.whole_exposure = !options.serve.empty();  // as real cameras see it

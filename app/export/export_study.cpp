@@ -124,7 +124,9 @@ std::vector<std::string> export_into_study(const Case& the_case, const ExportedO
             written.push_back(file);
             return into / file;
         };
-        name.series = "registration", name.series_number = 9101, name.description = "Planlight: match of patient";
+        name.series = "registration", name.series_number = 9101;
+        name.description =
+            operation.confirmed ? "Planlight: match of patient" : "Planlight: match of patient, NOT CONFIRMED";
         if (study.frame_of_reference_uid.empty())
             warn("the planning series names no frame of reference: the match is not written as Spatial Registration");
         else

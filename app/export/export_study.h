@@ -15,6 +15,7 @@ namespace planlight {
 /// What there is of an operation to be handed to other systems.
 struct ExportedOperation {
     RegistrationResult match;
+    bool confirmed = true;                ///< it was sure, or a person looked at it
     std::string made;                     ///< of the match, ISO 8601, UTC
     std::optional<PointCloud> cloud;      ///< the scan that was matched, rig
     std::optional<OperationFacts> facts;  ///< of its recording

@@ -49,7 +49,8 @@ PoseCovariance covariance_of(const std::vector<PointPair>& pairs, double error_r
 
 /// The landmark without which the rest would fit three times better; empty when there is none (or too few to tell).
 std::string odd_one_out(const std::vector<PointPair>& pairs, double rms_mm) {
-    if (pairs.size() < 5) return {};
+    constexpr double kAlike_mm = 0.5;  // no landmark is touched more exactly
+    if (pairs.size() < 5 || rms_mm < kAlike_mm) return {};
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         std::vector<PointPair> rest = pairs;
         rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));

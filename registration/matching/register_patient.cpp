@@ -9,6 +9,7 @@
 #include "registration/matching/cloud_pieces.h"
 #include "registration/matching/find_skin.h"
 #include "registration/matching/free_space.h"
+#include "registration/matching/innermost_layer.h"
 #include "registration/matching/judge_match.h"
 #include "registration/matching/measure_displacement.h"
 #include "registration/matching/smooth_deformation.h"
@@ -63,15 +64,52 @@ void widen_by_shape(double shape_change_mm, PoseCovariance& covariance) {
     covariance.of_turn_and_shift.diagonal().tail<3>().array() += std::pow(shape_change_mm / kSigmas, 2);
 }
 
+/// A pose, and what of the scan it was fitted to.
+struct FinePose {
+    PointCloud skin;
+    IcpResult icp;
+    DeformablePose settled;
+};
+
+FinePose refine_pose(PointCloud skin, const SkinLut& lut, const RigidTransform& start_ct_from_rig,
+                     const IcpSettings& icp, const DeformableSettings& deformable) {
+    FinePose fine{std::move(skin), {}, {}};
+    fine.icp = refine_icp(fine.skin, lut, start_ct_from_rig, icp);
+    fine.settled = refine_pose_deformable(fine.skin, lut, fine.icp.ct_from_rig, deformable);
+    return fine;
+}
+
+/// Cloth that lies close on the skin pulls the pose outwards and stands for skin that moved: it is left out by turns
+/// with the pose, which is then that of the skin alone.
+FinePose refine_pose_under_cloth(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& start_ct_from_rig,
+                                 const RegistrationSettings& settings) {
+    constexpr int kRounds = 5;
+    constexpr std::size_t kSame = 100;  // a hundredth of the points
+    IcpSettings close = settings.icp;
+    close.first_scale_mm = 1;
+    FinePose fine = refine_pose(cloud, lut, start_ct_from_rig, settings.icp, settings.skin);
+    for (int round = 0; round < kRounds; ++round) {
+        PointCloud layer = innermost_layer(cloud, lut, fine.settled.ct_from_rig);
+        const std::size_t before = fine.skin.size(), after = layer.size();
+        if (kSame * (std::max(before, after) - std::min(before, after)) <= cloud.size()) break;
+        fine = refine_pose(std::move(layer), lut, fine.settled.ct_from_rig, close, settings.skin);
+    }
+    return fine;
+}
+
 /// The fine match from `start`, and what it is judged by; returns the skin's fit for the judgement. `seen`: all that
-/// the devices saw, cloth as well: the way back from there must be free.
+/// the devices saw, cloth as well: the way back from there must be free. `under_cloth`: `cloud` was chosen from it, and
+/// may hold cloth that lies close on the skin; the fit is that of all of `cloud`.
 FineMatch match_finely(const PointCloud& cloud, const PointCloud& seen, const SkinLut& lut,
-                       const RigidTransform& start_ct_from_rig, const RegistrationSettings& settings,
+                       const RigidTransform& start_ct_from_rig, const RegistrationSettings& settings, bool under_cloth,
                        RegistrationResult& result) {
     const auto start = std::chrono::steady_clock::now();
     result.initial_patient_from_ct = start_ct_from_rig.inverse();
-    IcpResult icp = refine_icp(cloud, lut, start_ct_from_rig, settings.icp);
-    const DeformablePose settled = refine_pose_deformable(cloud, lut, icp.ct_from_rig, settings.skin);
+    FinePose fine_pose = under_cloth ? refine_pose_under_cloth(cloud, lut, start_ct_from_rig, settings)
+                                     : refine_pose(cloud, lut, start_ct_from_rig, settings.icp, settings.skin);
+    const PointCloud& skin = fine_pose.skin;
+    IcpResult& icp = fine_pose.icp;
+    const DeformablePose& settled = fine_pose.settled;
     if (settings.moved_skin) icp.ct_from_rig = settled.ct_from_rig;
     result.covariance = settled.covariance;
     if (settled.known()) {
@@ -79,8 +117,8 @@ FineMatch match_finely(const PointCloud& cloud, const PointCloud& seen, const Sk
         result.skin_offset_mm = settled.offset_mm;
     }
     result.patient_from_ct = icp.ct_from_rig.inverse();
-    result.skin = measure_displacement(cloud, lut, icp.ct_from_rig);
-    if (const auto deformation = fit_smooth_deformation(cloud, lut, icp.ct_from_rig))
+    result.skin = measure_displacement(skin, lut, icp.ct_from_rig);
+    if (const auto deformation = fit_smooth_deformation(skin, lut, icp.ct_from_rig))
         result.shape_change_mm = deformation->probability() * deformation->p95_mm;
     widen_by_spread(result.skin, settings, result.covariance);
     widen_by_shape(result.shape_change_mm.value_or(0), result.covariance);
@@ -128,7 +166,7 @@ bool on_a_surface(const CloudPieces& pieces, std::size_t point) {
 
 /// Search, fine match, mirror image and verdict; `result` brings what is known of the whole scan.
 Attempt match_alone(const PointCloud& cloud, const PointCloud& seen, const SkinLut& lut, const MatchingSkin& skin,
-                    const RegistrationSettings& settings, const RegistrationResult& of_scan) {
+                    const RegistrationSettings& settings, const RegistrationResult& of_scan, bool under_cloth = false) {
     Attempt attempt{of_scan, find_initial_match(cloud, skin, settings.initial), {}};
     RegistrationResult& result = attempt.result;
     if (attempt.match.candidates.empty()) {
@@ -138,7 +176,8 @@ Attempt match_alone(const PointCloud& cloud, const PointCloud& seen, const SkinL
     }
     result.runner_up_ratio = attempt.match.runner_up_ratio;
     result.agreeing_bases = attempt.match.candidates[0].agreeing_bases;
-    attempt.fine = match_finely(cloud, seen, lut, attempt.match.candidates[0].ct_from_rig, settings, result);
+    attempt.fine =
+        match_finely(cloud, seen, lut, attempt.match.candidates[0].ct_from_rig, settings, under_cloth, result);
     if (settings.mirror_test) result.mirror_ratio = mirror_ratio(cloud, skin, attempt.match, settings);
     Judgement judgement(result);
     judge_fit(settings, attempt.fine.fit, result.runner_up_ratio >= 1.3 && result.agreeing_bases >= 2, judgement);
@@ -167,7 +206,7 @@ Attempt match_among_cloth(const PointCloud& cloud, const CloudPieces& pieces, co
     if (!found) return attempt;
     const PointCloud bare = part_of(cloud, [&](std::size_t i) { return found->is_skin[i] != 0; });
     if (!unfit(bare, settings, settings.min_points / 2).empty()) return attempt;
-    attempt = match_alone(bare, cloud, lut, skin, settings, of_scan);
+    attempt = match_alone(bare, cloud, lut, skin, settings, of_scan, true);
     attempt.result.skin_fraction = found->skin_fraction;
     if (attempt.match.candidates.empty()) return attempt;
     Judgement judgement(attempt.result, attempt.result.verdict);
@@ -220,7 +259,7 @@ RegistrationResult register_patient_near(const PointCloud& cloud, const SkinLut&
         result.reasons.push_back(problem);
         return result;
     }
-    const FineMatch fine = match_finely(cloud, cloud, lut, start_patient_from_ct.inverse(), settings, result);
+    const FineMatch fine = match_finely(cloud, cloud, lut, start_patient_from_ct.inverse(), settings, false, result);
     Judgement judgement(result, Verdict::ask);
     judge_fit(settings, fine.fit, true, judgement);
     judge_fine_match(settings, fine, result, judgement);

@@ -62,16 +62,19 @@ void fit_delays(double noise, Instant exposure, LatencyResult& result) {
         look(m - 2 * step, m + 2 * step, step / 2, std::max(kLeastSpread_s, s / (factor * factor)), s * factor * factor,
              std::sqrt(factor));
     }
-    if (result.exact == 0 && latest < earliest) middle = (latest + earliest) / 2;  // any of them will do
+    const bool flat = result.exact == 0 && latest < earliest;
+    if (flat) middle = (latest + earliest) / 2;  // any of them will do
     result.median_s = middle;
     result.jitter_s = spread <= 2 * kLeastSpread_s ? 0 : spread;
     result.earliest_s = earliest;
     result.latest_s = latest;
     const double step = std::max(spread, reading_s) / 4;
     const double bend = curvature([&](double m) { return cost(result.delays, reading_s, m, spread); }, middle, step);
-    // Without an exact change the likelihood may be flat: then every delay between the bounds will do.
-    const double flat_s = std::max(0.0, earliest - latest) / std::sqrt(12.0);
-    result.median_sigma_s = std::max({bend > 0 ? 1 / std::sqrt(bend) : (high - low) / std::sqrt(12.0), flat_s,
+    // Without an exact change the likelihood may be flat: then every delay between the bounds will do. Without jitter
+    // it has no bend at all to go by.
+    const double flat_s = flat ? (earliest - latest) / std::sqrt(12.0) : 0;
+    const double bent_s = bend > 0 ? 1 / std::sqrt(bend) : (high - low) / std::sqrt(12.0);
+    result.median_sigma_s = std::max({flat && result.jitter_s == 0 ? 0 : bent_s, flat_s,
                                       reading_s / std::sqrt(static_cast<double>(result.delays.size()))});
     // A projector whose pictures change in step with the cameras never shows a change to an exposure, and all bounds
     // lie alike: they do not narrow each other.

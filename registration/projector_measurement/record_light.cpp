@@ -36,6 +36,16 @@ public:
         if (bench_.keep) bench_.keep(frame);
         recording_.frames.push_back(brightness_of(frame));
     }
+    /// Every frame from the last one on, until so many began after this moment: the light of an order that comes late
+    /// meets none that was passed over.
+    void follow(int frames) {
+        const Instant from = bench_.clock.now();
+        for (int later = 0; later < frames;) {
+            const FrameBrightness& last = recording_.frames.back();
+            grab(last.opened() + last.exposure);
+            later += recording_.frames.back().opened() >= from;
+        }
+    }
     /// One colour until it is steady, then so many frames.
     void show_steady(Rgb colour, int frames) {
         show(colour, frames);
@@ -169,12 +179,12 @@ LightRecording record_latency(const LightBench& bench, const RecordSettings& set
                 recorder.show(bit ? kWhite : kBlack, 8 * settings.frames_a_flash);
                 on = bit;
             }
-            for (int i = 0; i < settings.frames_a_flash; ++i) recorder.grab(bench.clock.now());
+            recorder.follow(settings.frames_a_flash);
             recorder.step();
         }
     }
     // What was ordered last is still to be seen.
-    for (int i = 0; i < 2 * settings.frames_a_flash; ++i) recorder.grab(bench.clock.now());
+    recorder.follow(2 * settings.frames_a_flash);
     return recorder.finish();
 }
 

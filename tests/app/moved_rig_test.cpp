@@ -159,6 +159,17 @@ TEST_F(MovedRig, FilesOfOthersAreRefusedWithBothNames) {
     EXPECT_NE(drawn.err.find("begin at its first frame"), std::string::npos) << drawn.err;
     expect_one_clear_sentence(run("review case2 --registration good.json --picture never.png"), 3,
                               "is a match of case");
+    ASSERT_EQ(run("scan room2/capture --rig room2/rig.json --out other.ply").exit_code, 0);
+    expect_one_clear_sentence(run("export case --registration good.json --cloud other.ply --slicer never"), 3,
+                              "is the scan of capture");
+    expect_one_clear_sentence(run("review case --registration good.json --cloud other.ply --picture never.png"), 3,
+                              "is the scan of capture");
+    fs::create_directories(root() / "hospital");
+    fs::copy(root() / "room" / "rig.json", root() / "hospital" / "rig.json");
+    const std::string rig = read_text(root() / "hospital" / "rig.json");
+    expect_one_clear_sentence(run("simulate " + patient() + " --preset paper --seed 9 --frames 0 --out hospital"), 3,
+                              "of no simulated room");
+    EXPECT_EQ(read_text(root() / "hospital" / "rig.json"), rig);
 }
 
 TEST_F(MovedRig, FramesOfExchangedCamerasOrOfAnotherRigAreNamed) {

@@ -246,6 +246,12 @@ TEST_F(CommandsTest, WhatComesNearARiskStructureIsSaidEverywhere) {
     const json result = json::parse(run.out);
     ASSERT_EQ(result["risk_structures"].size(), 2U);
     EXPECT_EQ(result["risk_structures"][1]["name"], "Orbit");
+    const auto unnamed = run_planlight(
+        "prepare " + patient() + " --plan " + plan() + risk + "--voxel-mm 4 --json --anonymous --out unnamed", root());
+    ASSERT_EQ(unnamed.exit_code, 0) << unnamed.err;
+    EXPECT_EQ(json::parse(unnamed.out)["risk_structures"][1]["name"], "structure 2");
+    EXPECT_EQ(unnamed.err.find("Facial"), std::string::npos) << unnamed.err;
+    EXPECT_FALSE(folder_says(root() / "unnamed", "Orbit")) << "files may be called after patients";
     const json way = result["items"][5]["risk"];
     EXPECT_EQ(way[0]["structure"], "Facial nerve");
     EXPECT_TRUE(way[0]["through"].get<bool>());

@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include "registration/projector_measurement/fit_delays.h"
 #include "registration/projector_measurement/light_findings.h"
 #include "registration/projector_measurement/record_light.h"
 #include "tests/registration/projector_measurement/card_room.h"
@@ -60,7 +61,7 @@ TEST(Latency, WithoutAChangeWithinAnExposureOnlyTheTimeBetweenExposuresIsClaimed
     ASSERT_FALSE(r.refusal);
     EXPECT_NEAR(1e3 * r.median_s, 40, 4);
     EXPECT_LT(std::abs(1e3 * r.median_s - 40), 3 * 1e3 * r.median_sigma_s);
-    EXPECT_GT(r.median_sigma_s, 2e-4);
+    EXPECT_GT(r.median_sigma_s, 1e-4);
 }
 
 TEST(Latency, ABrokenPromiseIsSaidWithTheDelayToSet) {
@@ -198,6 +199,88 @@ TEST(Recorder, LeavesTheProjectorDarkAlsoWhenACameraFails) {
     EXPECT_EQ(projector.dark, 1);
     EXPECT_ANY_THROW(record_response(bench));
     EXPECT_EQ(projector.dark, 1);
+}
+
+/// Cameras on a network, whose frames come a while after their exposure and wait until they are asked for, and a
+/// projector that is late by its delay alone.
+class RoomByWire : public Projector, public StereoCamera, public Clock {
+public:
+    explicit RoomByWire(Instant delay) : delay_(delay) {}
+    int width() const override { return 64; }
+    int height() const override { return 48; }
+    Instant show(const RgbImage& picture, Instant) override {
+        changes_.push_back({now_ + delay_, picture.pixels.front()[0] > 0});
+        return now_ + milliseconds(30);  // what somebody set
+    }
+    void go_dark() noexcept override { changes_.push_back({now_ + delay_, false}); }
+    StereoFrame grab(Instant not_before, milliseconds) override {
+        const auto number = std::max(last_ + 1, (not_before + kInterval - Instant(1)) / kInterval);
+        last_ = number;
+        const Instant opened = number * kInterval;
+        now_ = std::max(now_, opened + kExposure + kTransfer);
+        const auto grey = static_cast<std::uint8_t>(40 + 160 * lit_share(opened, opened + kExposure));
+        StereoFrame frame;
+        frame.left = frame.right = GrayImage(64, 48, grey);
+        frame.at = opened + kExposure / 2;
+        frame.exposure = kExposure;
+        frame.number = static_cast<std::uint64_t>(number);
+        return frame;
+    }
+    Instant now() const override { return now_; }
+    LightBench bench() {
+        return {*this, *this, *this, [this](Instant at) { now_ = std::max(now_, at); }, {}, {}};
+    }
+
+private:
+    static constexpr Instant kInterval = milliseconds(40), kExposure = milliseconds(10), kTransfer = milliseconds(32);
+    double lit_share(Instant from, Instant to) const {
+        Instant lit{}, since = from;
+        bool on = false;
+        for (const auto& [at, white] : changes_) {
+            if (at >= to) break;
+            if (on && at > since) lit += at - since;
+            since = std::max(since, at), on = white;
+        }
+        if (on) lit += to - since;
+        return seconds(lit) / seconds(to - from);
+    }
+    Instant delay_, now_ = milliseconds(1);
+    Instant::rep last_ = 0;  ///< number of the frame that was given out last
+    std::vector<std::pair<Instant, bool>> changes_;
+};
+
+/// Light that comes after frames were asked for met none while only frames after each order were asked for, and its
+/// delay was known to the time between two exposures.
+TEST(Recorder, ADelayOfSeveralFramesIsMeasuredAsASmallOne) {
+    for (const int delay_ms : {20, 60, 75, 95, 137}) {
+        RoomByWire room{milliseconds(delay_ms)};
+        const LatencyResult r = measure_latency(record_latency(room.bench()));
+        ASSERT_FALSE(r.refusal) << r.refusal->reason;
+        EXPECT_NEAR(1e3 * r.median_s, delay_ms, 1) << delay_ms;
+        EXPECT_LT(1e3 * r.median_sigma_s, 1) << delay_ms;
+        EXPECT_GT(r.exact, 15U) << delay_ms;
+        EXPECT_NEAR(1e3 * r.light_delay_s, delay_ms, 8) << delay_ms;
+    }
+}
+
+/// No change was seen within an exposure, and frames were lost on both sides: the delay is known to the bounds that all
+/// changes share, and no worse.
+TEST(FitDelays, WithoutAnExactChangeTheDelayIsKnownToTheBoundsThatAllShare) {
+    LatencyResult result;
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> evenly(0, 1);
+    double earliest = 1, latest = -1;
+    for (std::size_t i = 0; i < 70; ++i) {
+        LightDelay delay;
+        delay.order = i;
+        delay.at_least_s = 0.060 - 0.2 * evenly(random);
+        delay.at_most_s = 0.095 + 0.2 * evenly(random);
+        latest = std::max(latest, delay.at_least_s), earliest = std::min(earliest, delay.at_most_s);
+        result.delays.push_back(delay);
+    }
+    fit_delays(0.01, milliseconds(10), result);
+    EXPECT_NEAR(result.median_s, (earliest + latest) / 2, 1e-9);
+    EXPECT_NEAR(result.median_sigma_s, (earliest - latest) / std::sqrt(12.0), 1e-3);
 }
 
 }  // namespace
