@@ -25,7 +25,7 @@ struct SimulateOptions {
     std::string serve;  ///< monitor whose picture is the light: the room is served as hardware; empty: written to files
     std::vector<std::string> addresses{"127.0.0.1", "127.0.0.2"};  ///< of the served cameras
     double lose_packets = 0;                                       ///< share of the left served camera's
-    double projector_delay_ms = 25;  ///< from the order of a picture to its light
+    double projector_delay_ms = 25;                                ///< from the order of a picture to its light
     int right_behind = 0;                                          ///< frames that the right served camera is behind
     bool json = false;
 };
