@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -79,6 +80,18 @@ FinePose refine_pose(PointCloud skin, const SkinLut& lut, const RigidTransform& 
     return fine;
 }
 
+/// What was left out as cloth may have been skin that moved, or some of the cloth be left: a share of the way that the
+/// pose went for it, one standard deviation, along that way.
+void widen_by_way(const RigidTransform& of_all_ct_from_rig, double share, DeformablePose& settled) {
+    if (!settled.known()) return;
+    const RigidTransform way = settled.ct_from_rig * of_all_ct_from_rig.inverse();
+    const Eigen::AngleAxisd turn(way.linear());
+    const Eigen::Vector3d& centre = settled.covariance.centre_in_ct;
+    Eigen::Matrix<double, 6, 1> went;
+    went << turn.angle() * turn.axis(), way * centre - centre;
+    settled.covariance.of_turn_and_shift += share * share * went * went.transpose();
+}
+
 /// Cloth that lies close on the skin pulls the pose outwards and stands for skin that moved: it is left out by turns
 /// with the pose, which is then that of the skin alone.
 FinePose refine_pose_under_cloth(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& start_ct_from_rig,
@@ -88,12 +101,14 @@ FinePose refine_pose_under_cloth(const PointCloud& cloud, const SkinLut& lut, co
     IcpSettings close = settings.icp;
     close.first_scale_mm = 1;
     FinePose fine = refine_pose(cloud, lut, start_ct_from_rig, settings.icp, settings.skin);
+    const RigidTransform of_all = fine.settled.ct_from_rig;
     for (int round = 0; round < kRounds; ++round) {
         PointCloud layer = innermost_layer(cloud, lut, fine.settled.ct_from_rig);
         const std::size_t before = fine.skin.size(), after = layer.size();
         if (kSame * (std::max(before, after) - std::min(before, after)) <= cloud.size()) break;
         fine = refine_pose(std::move(layer), lut, fine.settled.ct_from_rig, close, settings.skin);
     }
+    widen_by_way(of_all, settings.left_out_share, fine.settled);
     return fine;
 }
 

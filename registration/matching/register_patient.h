@@ -63,6 +63,8 @@ struct RegistrationSettings {
     /// every point must be free in the CT too.
     std::optional<Eigen::Vector3d> viewpoint_in_rig;
     double max_blocked = 0.1, far_too_many_blocked = 0.3;  ///< share of the ways that are not; above: ask, no
+    /// Of the way that the pose went when cloth close on the skin was left out: what may be wrong with it, one sigma.
+    double left_out_share = 0.35;
     bool look_among_cloth = true;  ///< where the whole scan is not sure and much of it lies off the skin
     FindSkinSettings find_skin;
     AmongClothLimits among_cloth;
