@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 
@@ -8,6 +7,7 @@
 #include "app/commands/overwritten_input.h"
 #include "app/commands/usage_problem.h"
 #include "app/console.h"
+#include "app/freed_memory.h"
 #include "app/site_settings.h"
 #include "planning_io/types/error.h"
 
@@ -35,23 +35,6 @@ void console_options(CLI::App* command, ConsoleSettings& console) {
     for (const char* name : {"--quiet", "--verbose", "--log-file"}) command->get_option(name)->group("What is said");
 }
 
-/// Volumes and pictures come and go by the dozen; memory that is handed back to the system each time costs a page fault
-/// for every 4 KiB when it is asked for again.
-void keep_freed_memory() {
-    constexpr int kMmapFrom_bytes = 32 << 20;  // the most that the library takes
-    constexpr int kKept_bytes = 1 << 30;
-    mallopt(M_MMAP_THRESHOLD, kMmapFrom_bytes);
-    mallopt(M_TRIM_THRESHOLD, kKept_bytes);
-    mallopt(M_TOP_PAD, 16 << 20);
-}
-
-/// What runs for hours hands large blocks back at once: kept, small things come to lie between them, and what is kept
-/// grows by a megabyte a minute.
-void hand_large_blocks_back() {
-    constexpr int kLarge_bytes = 256 << 10;  // less than the picture of a camera
-    mallopt(M_MMAP_THRESHOLD, kLarge_bytes);
-}
-
 int run_command(const CLI::App& command, const Run& run, const ConsoleSettings& console, const std::string& line) {
     const auto* json = command.get_option_no_throw("--json");
     set_up_console(console, json && json->count() > 0);
@@ -59,7 +42,6 @@ int run_command(const CLI::App& command, const Run& run, const ConsoleSettings& 
         fmt::print(stderr, "planlight: {}\n", problem);
         return static_cast<int>(ExitCode::usage);
     }
-    if (command.get_name() == "session" || command.get_name() == "projector-window") hand_large_blocks_back();
     log_line(fmt::format("planlight {} ({})", PLANLIGHT_VERSION, line));
     if (const SiteSettings site = read_site_settings(); !site.read_from.empty())
         log_line("settings of this site: " + site.read_from.string());

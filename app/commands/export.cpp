@@ -70,7 +70,7 @@ ExportedOperation operation_of(const ExportOptions& options, const Case& the_cas
         if (!operation.confirmed)
             warn(
                 fmt::format("the match was not sure, and nothing says that somebody looked at the light ({}): what is "
-                            "written calls it not confirmed",
+                            "written calls it NOT CONFIRMED",
                             fmt::join(operation.match.reasons, "; ")));
     }
     std::vector<std::string> unknown;

@@ -74,6 +74,7 @@ void make_anonymous(Inputs& in, const PrepareOptions& options) {
     std::vector<Path> of_plan = options.risk;
     of_plan.push_back(options.plan);
     leave_out_names(in.plan.notes, of_plan);
+    // What is called after its file; a structure of an RT Structure Set has a name of its own.
     std::vector<RiskStructure>& structures = in.plan.plan.risk_structures;
     for (std::size_t i = 0; i < structures.size(); ++i)
         for (const Path& file : options.risk)

@@ -1,6 +1,7 @@
 // Not for people: the projector window in a process of its own (projection/projector_process.h), started by `session`.
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/freed_memory.h"
 #include "projection/projector_process.h"
 
 namespace planlight {
@@ -11,7 +12,10 @@ Run add_projector_window(CLI::App& app) {
                             "session case --volume Cranium.inv3 --projector HDMI-2");
     sub->group("");  // not in the help
     sub->add_option("--monitor", *monitor, "Monitor to light")->required();
-    return [monitor] { return serve_projector(*monitor, kProjectorBell, kProjectorMailbox); };
+    return [monitor] {
+        hand_large_blocks_back();
+        return serve_projector(*monitor, kProjectorBell, kProjectorMailbox);
+    };
 }
 
 }  // namespace planlight

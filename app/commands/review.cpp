@@ -17,7 +17,6 @@
 #include "app/site_settings.h"
 #include "app/windows/scene_view.h"
 #include "planning_io/case/case_folder.h"
-#include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/registration_file.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/plan/point_pairs_file.h"
@@ -46,12 +45,15 @@ void set_status(const RegistrationResult& found, OperatorModel& model) {
     }
 }
 
-std::shared_ptr<const PointCloud> cloud_of(const ReviewOptions& options) {
+/// Null where none is named. `match`: of the cloud; empty where landmarks are clicked.
+std::shared_ptr<const PointCloud> cloud_of(const ReviewOptions& options,
+                                           const std::optional<RegistrationResult>& match) {
     if (options.cloud.empty()) return nullptr;
     if (options.registration.empty() && options.landmarks.empty())
         throw Error(ExitCode::usage, "nothing says where the cloud lies on the skin",
                     "Give its match with --registration, or click landmarks on both with --landmarks FILE.");
-    return std::make_shared<PointCloud>(read_cloud(options.cloud, {1, true}));
+    return std::make_shared<PointCloud>(match ? read_cloud_of(*match, options.cloud, options.registration)
+                                              : read_cloud(options.cloud, {1, true}));
 }
 
 /// The window until landmarks are used or it is closed; what was clicked is kept either way.
@@ -97,14 +99,15 @@ int run_review(const ReviewOptions& options) {
     const Case the_case = read_case(options.case_folder);
     const CaseDrawing drawing(the_case, drawing_settings(read_site_settings()));
     OperatorModel model = model_of_case(the_case, drawing);
-    const std::shared_ptr<const PointCloud> cloud = cloud_of(options);
     std::optional<RegistrationResult> found;
+    std::vector<std::string> unknown;
     if (!options.registration.empty()) {
         found = read_registration(options.registration);
-        std::vector<std::string> unknown;
         check_case(*found, the_case, options.registration, unknown);
-        if (!options.cloud.empty()) read_cloud_of(*found, options.cloud, options.registration);
-        for (const std::string& what : unknown) warn(what);
+    }
+    const std::shared_ptr<const PointCloud> cloud = cloud_of(options, found);
+    for (const std::string& what : unknown) warn(what);
+    if (found) {
         show_match(the_case, *found, cloud, model);
         set_status(*found, model);
     }

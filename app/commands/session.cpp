@@ -7,6 +7,7 @@
 #include "app/commands/session_recording.h"
 #include "app/commands/surgeon_option.h"
 #include "app/console.h"
+#include "app/freed_memory.h"
 #include "app/igtl/session_link.h"
 #include "app/live/live_window.h"
 #include "app/live/real_room.h"
@@ -158,6 +159,7 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
 }
 
 int run_session(const SessionOptions& options) {
+    hand_large_blocks_back();
     const SiteSettings site = site_with(options.surgeon);
     SessionWindow window(options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor,
                          words_of_window(options.language, site), theme_of_window(options.theme, site));

@@ -53,16 +53,13 @@ std::vector<StereoFrame> record_frames(simulation::SimulatedRig& rig, const Simu
 }
 
 /// The rig of real devices is not to be lost to a simulated room.
-void check_folder(const Path& folder, bool served) {
+void check_folder(const Path& folder) {
     std::error_code ignored;
     const auto is_there = [&](const char* name) { return std::filesystem::exists(folder / name, ignored); };
     for (const char* name : {"rig.json", "room.json"})
         if (is_there(name) && !is_there("truth.json"))
             throw InputError(folder, fmt::format("holds a {} that is of no simulated room", name),
                              "Name a new folder with --out.");
-    for (const char* name : {"capture", "captures"})
-        if (!served && is_there(name) && !std::filesystem::is_empty(folder / name, ignored))
-            throw InputError(folder / name, "exists already and is not empty", "Name a new folder with --out.");
 }
 
 int run_simulate(const SimulateOptions& options) {
@@ -71,7 +68,7 @@ int run_simulate(const SimulateOptions& options) {
             ExitCode::usage,
             fmt::format("--addresses has {} of the two that are wanted, one for each camera", options.addresses.size()),
             "Give --addresses 127.0.0.1,127.0.0.2.");
-    check_folder(options.out, !options.serve.empty());
+    check_folder(options.out);
     if (!options.board.empty()) return run_simulate_board(options);
     if (options.volume.empty())
         throw Error(ExitCode::usage, "neither a patient nor a board is given",
@@ -93,7 +90,6 @@ int run_simulate(const SimulateOptions& options) {
     simulation::SimulatedRig rig(volume, points_of(plan), room);
     if (!options.serve.empty()) return run_simulate_served(options, rig);
     make_folder(options.out);
-    write_rig(rig.calibration(), options.out / "rig.json");
     ProgressBar bar;
     StripeSettings stripes;
     stripes.width = rig.projector().width();
@@ -104,6 +100,7 @@ int run_simulate(const SimulateOptions& options) {
     write_capture(capture_folder_from(capture), options.out / "capture");
     const auto frames = record_frames(rig, options, bar);
     write_frames(frames, options.out / "frames");
+    write_rig(rig.calibration(), options.out / "rig.json");
 
     nlohmann::json truth = nlohmann::json::parse(rig.truth_json());
     const auto rows = [](const RigidTransform& t) {

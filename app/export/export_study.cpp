@@ -156,6 +156,7 @@ void export_for_slicer(const Case& the_case, const ExportedOperation& operation,
     scene.plan = the_case.plan;
     if (operation.cloud) scene.cloud = *operation.cloud;
     scene.ct_from_rig = operation.match.patient_from_ct.inverse();
+    scene.confirmed = operation.confirmed;
     for (const Stroke& stroke : drawing.drawing.strokes) {
         const auto lines = lit_lines(stroke);
         scene.light.insert(scene.light.end(), lines.begin(), lines.end());

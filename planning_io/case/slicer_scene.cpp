@@ -177,7 +177,8 @@ void write_items(const Plan& plan, const fs::path& folder, MrmlScene& mrml) {
 void fill(const SlicerScene& scene, const fs::path& folder) {
     MrmlScene mrml;
     write_slicer_transform(scene.ct_from_rig.inverse(), folder / "ct_from_rig.tfm");
-    mrml.add_transform("ct_from_rig", scene.ct_from_rig, "ct_from_rig.tfm");
+    mrml.add_transform(scene.confirmed ? "ct_from_rig" : "ct_from_rig, NOT CONFIRMED", scene.ct_from_rig,
+                       "ct_from_rig.tfm");
     if (!scene.skin.triangles.empty()) {
         write_skin(scene.skin, folder / "skin.vtp");
         mrml.add_model("skin", "skin.vtp", "color=\"0.86 0.72 0.64\" opacity=\"0.7\"");

@@ -26,6 +26,7 @@ struct SlicerScene {
     Plan plan;
     PointCloud cloud;
     RigidTransform ct_from_rig = RigidTransform::Identity();  ///< at the scan; for the cloud
+    bool confirmed = true;                                    ///< the match; if not, the transform's name says so
     std::vector<SlicerLine> light;
 };
 

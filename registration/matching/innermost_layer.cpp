@@ -110,17 +110,18 @@ double top_of_lowest_layer(std::vector<double> values) {
 
 }  // namespace
 
-PointCloud innermost_layer(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig) {
+std::optional<PointCloud> innermost_layer(const PointCloud& cloud, const SkinLut& lut,
+                                          const RigidTransform& ct_from_rig) {
     constexpr std::size_t kFewestPlaces = 40;
     constexpr double kLeastShare = 0.25;
     const std::vector<Place> places = places_of(cloud, lut, ct_from_rig);
-    if (places.size() < kFewestPlaces) return cloud;
+    if (places.size() < kFewestPlaces) return std::nullopt;
     const std::vector<double> above_mm = above_the_lowest(places);
     const double top_mm = top_of_lowest_layer(above_mm);
     const auto stay = static_cast<std::size_t>(
         std::count_if(above_mm.begin(), above_mm.end(), [&](double mm) { return mm <= top_mm; }));
     if (stay == places.size() || static_cast<double>(stay) < kLeastShare * static_cast<double>(places.size()))
-        return cloud;
+        return std::nullopt;
     PointCloud layer;
     const bool has_normals = cloud.normals_in_rig.size() == cloud.size();
     for (std::size_t i = 0; i < places.size(); ++i) {

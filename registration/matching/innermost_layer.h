@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "planning_io/types/point_cloud.h"
 #include "planning_io/types/rigid_transform.h"
 #include "planning_io/types/skin_lut.h"
@@ -12,7 +14,9 @@ namespace planlight {
 /// offset of its skin are fitted so that a fifth of the places lie below (quantile regression), which a second layer
 /// over two thirds of them does not lift. Of what is left, the lowest dense value is the skin, and places stay that lie
 /// no farther above it than three times the spread of those below. All points of a place stay or go together; what is
-/// near no skin goes. The cloud comes back as it is where all places stay, less than a quarter would, or there are few.
-PointCloud innermost_layer(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig);
+/// near no skin goes. Empty where nothing is to be left out: all places stay, less than a quarter would, or there are
+/// few.
+std::optional<PointCloud> innermost_layer(const PointCloud& cloud, const SkinLut& lut,
+                                          const RigidTransform& ct_from_rig);
 
 }  // namespace planlight

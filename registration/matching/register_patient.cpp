@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "registration/matching/cloud_pieces.h"
 #include "registration/matching/find_skin.h"
@@ -67,17 +68,15 @@ void widen_by_shape(double shape_change_mm, PoseCovariance& covariance) {
 
 /// A pose, and what of the scan it was fitted to.
 struct FinePose {
-    PointCloud skin;
+    std::optional<PointCloud> layer;  ///< empty: all of it
     IcpResult icp;
     DeformablePose settled;
 };
 
-FinePose refine_pose(PointCloud skin, const SkinLut& lut, const RigidTransform& start_ct_from_rig,
-                     const IcpSettings& icp, const DeformableSettings& deformable) {
-    FinePose fine{std::move(skin), {}, {}};
-    fine.icp = refine_icp(fine.skin, lut, start_ct_from_rig, icp);
-    fine.settled = refine_pose_deformable(fine.skin, lut, fine.icp.ct_from_rig, deformable);
-    return fine;
+void refine_pose(const PointCloud& skin, const SkinLut& lut, const RigidTransform& start_ct_from_rig,
+                 const IcpSettings& icp, const DeformableSettings& deformable, FinePose& fine) {
+    fine.icp = refine_icp(skin, lut, start_ct_from_rig, icp);
+    fine.settled = refine_pose_deformable(skin, lut, fine.icp.ct_from_rig, deformable);
 }
 
 /// What was left out as cloth may have been skin that moved, or some of the cloth be left: a share of the way that the
@@ -94,22 +93,22 @@ void widen_by_way(const RigidTransform& of_all_ct_from_rig, double share, Deform
 
 /// Cloth that lies close on the skin pulls the pose outwards and stands for skin that moved: it is left out by turns
 /// with the pose, which is then that of the skin alone.
-FinePose refine_pose_under_cloth(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& start_ct_from_rig,
-                                 const RegistrationSettings& settings) {
+void leave_cloth_out(const PointCloud& cloud, const SkinLut& lut, const RegistrationSettings& settings,
+                     FinePose& fine) {
     constexpr int kRounds = 5;
     constexpr std::size_t kSame = 100;  // a hundredth of the points
     IcpSettings close = settings.icp;
     close.first_scale_mm = 1;
-    FinePose fine = refine_pose(cloud, lut, start_ct_from_rig, settings.icp, settings.skin);
     const RigidTransform of_all = fine.settled.ct_from_rig;
     for (int round = 0; round < kRounds; ++round) {
-        PointCloud layer = innermost_layer(cloud, lut, fine.settled.ct_from_rig);
-        const std::size_t before = fine.skin.size(), after = layer.size();
+        std::optional<PointCloud> layer = innermost_layer(cloud, lut, fine.settled.ct_from_rig);
+        const std::size_t before = fine.layer ? fine.layer->size() : cloud.size(),
+                          after = layer ? layer->size() : cloud.size();
         if (kSame * (std::max(before, after) - std::min(before, after)) <= cloud.size()) break;
-        fine = refine_pose(std::move(layer), lut, fine.settled.ct_from_rig, close, settings.skin);
+        fine.layer = std::move(layer);
+        refine_pose(fine.layer ? *fine.layer : cloud, lut, fine.settled.ct_from_rig, close, settings.skin, fine);
     }
     widen_by_way(of_all, settings.left_out_share, fine.settled);
-    return fine;
 }
 
 /// The fine match from `start`, and what it is judged by; returns the skin's fit for the judgement. `seen`: all that
@@ -120,9 +119,10 @@ FineMatch match_finely(const PointCloud& cloud, const PointCloud& seen, const Sk
                        RegistrationResult& result) {
     const auto start = std::chrono::steady_clock::now();
     result.initial_patient_from_ct = start_ct_from_rig.inverse();
-    FinePose fine_pose = under_cloth ? refine_pose_under_cloth(cloud, lut, start_ct_from_rig, settings)
-                                     : refine_pose(cloud, lut, start_ct_from_rig, settings.icp, settings.skin);
-    const PointCloud& skin = fine_pose.skin;
+    FinePose fine_pose;
+    refine_pose(cloud, lut, start_ct_from_rig, settings.icp, settings.skin, fine_pose);
+    if (under_cloth) leave_cloth_out(cloud, lut, settings, fine_pose);
+    const PointCloud& skin = fine_pose.layer ? *fine_pose.layer : cloud;
     IcpResult& icp = fine_pose.icp;
     const DeformablePose& settled = fine_pose.settled;
     if (settings.moved_skin) icp.ct_from_rig = settled.ct_from_rig;
