@@ -121,7 +121,7 @@ FineMatch match_finely(const PointCloud& cloud, const PointCloud& seen, const Sk
     result.initial_patient_from_ct = start_ct_from_rig.inverse();
     FinePose fine_pose;
     refine_pose(cloud, lut, start_ct_from_rig, settings.icp, settings.skin, fine_pose);
-    if (under_cloth) leave_cloth_out(cloud, lut, settings, fine_pose);
+    if (under_cloth && settings.leave_cloth_out) leave_cloth_out(cloud, lut, settings, fine_pose);
     const PointCloud& skin = fine_pose.layer ? *fine_pose.layer : cloud;
     IcpResult& icp = fine_pose.icp;
     const DeformablePose& settled = fine_pose.settled;

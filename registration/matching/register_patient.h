@@ -63,6 +63,7 @@ struct RegistrationSettings {
     /// every point must be free in the CT too.
     std::optional<Eigen::Vector3d> viewpoint_in_rig;
     double max_blocked = 0.1, far_too_many_blocked = 0.3;  ///< share of the ways that are not; above: ask, no
+    bool leave_cloth_out = true;  ///< that lies close on the skin (`innermost_layer`); false: all that was found
     /// Of the way that the pose went when cloth close on the skin was left out: what may be wrong with it, one sigma.
     double left_out_share = 0.35;
     bool look_among_cloth = true;  ///< where the whole scan is not sure and much of it lies off the skin

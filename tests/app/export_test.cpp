@@ -103,6 +103,27 @@ TEST_F(Export, TheObjectsAreOfThePatientAndTheStudyOfThePlanningSeries) {
     EXPECT_LT((ct_from_rig - wanted).cwiseAbs().maxCoeff(), 1e-9) << "16 characters a number";
 }
 
+TEST_F(Export, AMatchThatNobodyConfirmedIsCalledSoInTheArchiveAndInSlicer) {
+    if (!is_there("dcmdump")) GTEST_SKIP() << "dcmtk is not installed";
+    ExportedOperation unsure = world().operation;
+    unsure.confirmed = false;
+    const fs::path root = world().folder.path();
+    export_into_study(world().prepared, unsure, world().series, {}, root / "unsure");
+    export_for_slicer(world().prepared, unsure, root / "unsure-slicer");
+    export_for_slicer(world().prepared, world().operation, root / "sure-slicer");
+    const auto series = [](const fs::path& folder) {
+        return said("dcmdump -q +P 0008,103e '" + (folder / "registration.dcm").string() + "'");
+    };
+    EXPECT_NE(series(root / "unsure").find("NOT CONFIRMED"), std::string::npos) << series(root / "unsure");
+    EXPECT_EQ(series(exported()).find("NOT CONFIRMED"), std::string::npos);
+    const auto scene_says = [](const fs::path& folder) {
+        std::ifstream in(folder / "scene.mrml");
+        return std::string(std::istreambuf_iterator<char>(in), {}).find("NOT CONFIRMED") != std::string::npos;
+    };
+    EXPECT_TRUE(scene_says(root / "unsure-slicer"));
+    EXPECT_FALSE(scene_says(root / "sure-slicer"));
+}
+
 TEST_F(Export, ThePdfIsOneAndThePictureHasItsPixels) {
     std::ifstream in(exported() / "report.dcm", std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(in), {});

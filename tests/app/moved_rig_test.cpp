@@ -170,6 +170,10 @@ TEST_F(MovedRig, FilesOfOthersAreRefusedWithBothNames) {
     expect_one_clear_sentence(run("simulate " + patient() + " --preset paper --seed 9 --frames 0 --out hospital"), 3,
                               "of no simulated room");
     EXPECT_EQ(read_text(root() / "hospital" / "rig.json"), rig);
+    const std::string of_room2 = read_text(root() / "room2" / "rig.json");
+    expect_one_clear_sentence(run("simulate " + patient() + " --preset paper --seed 9 --frames 0 --out room2"), 3,
+                              "exists already and is not empty");
+    EXPECT_EQ(read_text(root() / "room2" / "rig.json"), of_room2) << "another room's beside this capture";
 }
 
 TEST_F(MovedRig, FramesOfExchangedCamerasOrOfAnotherRigAreNamed) {

@@ -5,10 +5,8 @@
 # $SEEDS how many rooms (default 1), $FIRST_SEED which is the first, $PRESET of which kind (default paper), $BOARD which board (default
 # charuco 10x7 25 mm), $ANSWER the key by which a person at the window keeps (Return) or discards (Delete) the rig (default: no window, it is kept),
 # $FORMER a rig.json that is there before. Leaves events-SEED.json, room-SEED/, guided-SEED.json and the window's pictures in FOLDER.
-folder=$1 board=${BOARD:-charuco 10x7 25 mm}
-ip address add 127.0.0.2/8 dev lo 2>/dev/null
-failed=0
-check() { if [ "$2" = 1 ]; then echo "ok   $1"; else echo "FAIL $1 ($3)"; failed=1; fi; }
+. "$(dirname "$0")/serving.sh"
+board=${BOARD:-charuco 10x7 25 mm}
 keep=(--headless --keep yes)
 [ -z "$ANSWER" ] || command -v xdotool >/dev/null || { echo "skipped: xdotool is not installed"; exit 77; }
 press_when_done() {  # PID EVENTS: the key, as soon as the last pose is taken, until the program has taken it; before that it does nothing
@@ -21,19 +19,14 @@ press_when_done() {  # PID EVENTS: the key, as soon as the last pose is taken, u
     sleep 1
   done
 }
-number() { awk "BEGIN { print ($1) ? 1 : 0 }"; }
-rm -f "$folder/served"
-trap '[ -z "$served" ] || { kill $served 2>/dev/null; wait $served 2>/dev/null; }' EXIT
 first=${FIRST_SEED:-1}
 for seed in $(seq $first $((first + ${SEEDS:-1} - 1))); do
   room="$folder/room-$seed"
   rm -rf "$room" "$folder"/{events,guided,errors,shots}-$seed*
-  "$PLANLIGHT" simulate --board "$board" --preset ${PRESET:-paper} --seed $seed --serve DUMMY1 --out "$room" >"$folder/served" 2>&1 & served=$!
-  for i in $(seq 300); do grep -q "cameras answer" "$folder/served" && break; kill -0 $served 2>/dev/null || break; sleep 0.1; done
-  grep -q "cameras answer" "$folder/served" || { echo "skipped: $(cat "$folder/served")"; exit 77; }
+  serve "$room" --board "$board" --preset ${PRESET:-paper} --seed $seed
   # Of the lamp 25 ms, and what software OpenGL takes to paint.
   echo '{"format": "planlight projector", "version": 1, "made_on": "2024-01-01", "source": "set by the test", "projector": {}, "findings": [], "latency": {"light_delay_ms": 75}}' >"$folder/projector.json"
-  sed -i 's|"monitor": "DUMMY1"|"monitor": "DUMMY1", "file": "'"$folder"'/projector.json"|' "$room/room.json"
+  name_projector_file "$room/room.json"
   [ -z "$FORMER" ] || cp "$FORMER" "$folder/guided-$seed.json"
   began=$(date +%s.%N)
   [ -z "$ANSWER" ] || keep=(--operator DUMMY0 --keep ask --screenshots "$folder/shots-$seed")
@@ -41,17 +34,17 @@ for seed in $(seq $first $((first + ${SEEDS:-1} - 1))); do
   [ -z "$ANSWER" ] || press_when_done $guided "$folder/events-$seed.json"
   wait $guided; code=$?
   took=$(awk "BEGIN { print $(date +%s.%N) - $began }")
-  check "seed $seed: a rig is found" "$(number "$code == 0")" "exit code $code: $(tail -3 "$folder/errors-$seed")"
+  check "seed $seed: a rig is found" "$(is "$code == 0")" "exit code $code: $(tail -3 "$folder/errors-$seed")"
   if [ "$ANSWER" = Delete ]; then
-    check "seed $seed: a rig that is discarded is not written" "$(number "$(grep -c '"rig": *""' "$folder/events-$seed.json") == 1")" "$(tail -c 300 "$folder/events-$seed.json")"
+    check "seed $seed: a rig that is discarded is not written" "$(is "$(grep -c '"rig": *""' "$folder/events-$seed.json") == 1")" "$(tail -c 300 "$folder/events-$seed.json")"
     if [ -n "$FORMER" ]; then cmp -s "$FORMER" "$folder/guided-$seed.json"; else [ ! -e "$folder/guided-$seed.json" ]; fi
-    check "seed $seed: and what was there before stays" "$(number "$? == 0")" "$(ls "$folder")"
+    check "seed $seed: and what was there before stays" "$(is "$? == 0")" "$(ls "$folder")"
     [ $code = 0 ] || failed=1
   else
-    if [ -n "$FORMER" ]; then cmp -s "$FORMER" "$folder/guided-$seed-before.json"; check "seed $seed: the former rig is kept beside the new one" "$(number "$? == 0")" "$(ls "$folder")"; fi
+    if [ -n "$FORMER" ]; then cmp -s "$FORMER" "$folder/guided-$seed-before.json"; check "seed $seed: the former rig is kept beside the new one" "$(is "$? == 0")" "$(ls "$folder")"; fi
     [ $code = 0 ] && "$COMPARE" "$folder/guided-$seed.json" "$room/truth.json" "$folder/events-$seed.json" $took || failed=1
   fi
-  kill $served; wait $served 2>/dev/null; served=
+  stop_serving
   tail -2 "$folder/served"
 done
 exit $failed

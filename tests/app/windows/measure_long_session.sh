@@ -7,28 +7,13 @@
 # which is this test's own, beside 200 KiB and a descriptor every second) or frames (as if updates had not been counted). By hand, two hours:
 #   MINUTES=120 PROGRAM_SECONDS=8000 SECOND_MONITOR=800x600 PLANLIGHT=build/app/planlight PLAN=app/example/frontal_defect.mrk.json \
 #     nice tests/app/windows/two_monitors.sh tests/app/windows/measure_long_session.sh tests/app/windows/two_monitor_xorg.conf /tmp/long none
-folder=$1 patient=/usr/share/doc/invesalius-examples/examples/Cranium.inv3 every=10 rate_hz=25
-minutes=${MINUTES:-120} settle=${SETTLE_MINUTES:-10}
-[ -e $patient ] || { echo "skipped: the package invesalius-examples is not installed"; exit 77; }
-ip address add 127.0.0.2/8 dev lo 2>/dev/null
-failed=0
-check() { if [ "$2" = 1 ]; then echo "ok   $1"; else echo "FAIL $1 ($3)"; failed=1; fi; }
-is() { awk "BEGIN { print ($1) ? 1 : 0 }"; }
-end() {  # a failure says nothing where a tenth of the pictures or more was late
-  kill $served 2>/dev/null; wait $served 2>/dev/null
-  tail -1 "$folder/served"
-  late=$(awk '/could not keep up/ { print (10 * $7 > $1) ? 1 : 0 }' "$folder/served" | tail -1)
-  if [ "$late" = 1 ] && [ $failed = 1 ] && [ -z "$LEAK" ]; then echo "skipped: this machine is too busy to serve the room in time"; exit 77; fi
-  exit $failed
-}
+. "$(dirname "$0")/serving.sh"
+every=10 rate_hz=25 minutes=${MINUTES:-120} settle=${SETTLE_MINUTES:-10}
 rm -rf "$folder"/{case,room,served,errors,samples,session.json,projector.json}
-"$PLANLIGHT" prepare $patient --plan "$PLAN" --out "$folder/case" >/dev/null 2>"$folder/errors" || { cat "$folder/errors"; exit 1; }
-"$PLANLIGHT" simulate $patient --plan "$PLAN" --preset paper --seed 1 --speed-mm-s "${SPEED_MM_S:-0}" --serve DUMMY1 --out "$folder/room" >"$folder/served" 2>&1 & served=$!
-trap '[ -z "$session" ] || kill $session 2>/dev/null; kill $served 2>/dev/null; wait $served 2>/dev/null' EXIT
-for i in $(seq 600); do grep -q "cameras answer" "$folder/served" && break; kill -0 $served 2>/dev/null || break; sleep 0.1; done
-grep -q "cameras answer" "$folder/served" || { echo "skipped: $(cat "$folder/served")"; exit 77; }
-"$PLANLIGHT" projector --room "$folder/room/room.json" --part latency --refresh-hz 60 --out "$folder/projector.json" >/dev/null 2>"$folder/errors" || { cat "$folder/errors"; failed=1; end; }
-sed -i 's|"monitor": "DUMMY1"|"monitor": "DUMMY1", "file": "'"$folder"'/projector.json"|' "$folder/room/room.json"
+prepare_case
+serve_patient "$folder/room" 1 --speed-mm-s "${SPEED_MM_S:-0}"
+measure_delay || { cat "$folder/errors"; failed=1; end; }
+name_projector_file "$folder/room/room.json"
 case $LEAK in memory | descriptors) preload=(LD_PRELOAD="$LEAK_LIBRARY") ;; *) preload=() ;; esac
 env "${preload[@]}" "$PLANLIGHT" session "$folder/case" --room "$folder/room/room.json" --operator DUMMY0 --autoplay --record events --json \
   --end-after-s $((60 * minutes)) >"$folder/session.json" 2>"$folder/errors" & session=$!
