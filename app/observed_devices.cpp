@@ -40,6 +40,12 @@ StereoFrame ObservedDevices::ObservedCameras::newest(Instant not_before, std::ch
     return frame;
 }
 
+bool ObservedDevices::ObservedCameras::wait_until_exposed(Instant not_before, std::chrono::milliseconds patience) {
+    const bool exposed = asked(observer_, [&] { return device_.wait_until_exposed(not_before, patience); });
+    if (exposed && observer_) observer_->frame_exposed();
+    return exposed;
+}
+
 std::string ObservedDevices::ObservedCameras::doubt() const {
     std::string doubt = device_.doubt();
     if (observer_ && doubt != told_doubt_) observer_->cameras_doubted(doubt);

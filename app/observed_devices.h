@@ -42,6 +42,7 @@ private:
         ObservedCameras(StereoCamera& device, SessionObserver* observer) : device_(device), observer_(observer) {}
         StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override;
         StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override;
+        bool wait_until_exposed(Instant not_before, std::chrono::milliseconds patience) override;
         std::string doubt() const override;
 
     private:

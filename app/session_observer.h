@@ -61,6 +61,8 @@ public:
 
     // What the devices answered.
     virtual void clock_read(Instant /*now*/) noexcept {}
+    /// The next frame's shutters have closed (StereoCamera::wait_until_exposed); not told where that cannot be told.
+    virtual void frame_exposed() noexcept {}
     virtual void frame_taken(const StereoFrame& /*frame*/) noexcept {}
     virtual void picture_shown(const RgbImage& /*picture*/, Instant /*valid_until*/, Instant /*lit_from*/) noexcept {}
     virtual void went_dark() noexcept {}

@@ -27,6 +27,7 @@ public:
     }
     void match_offered(const KeptMatch& match) noexcept override { each(&SessionObserver::match_offered, match); }
     void clock_read(Instant now) noexcept override { each(&SessionObserver::clock_read, now); }
+    void frame_exposed() noexcept override { each(&SessionObserver::frame_exposed); }
     void frame_taken(const StereoFrame& frame) noexcept override { each(&SessionObserver::frame_taken, frame); }
     void picture_shown(const RgbImage& picture, Instant valid_until, Instant lit_from) noexcept override {
         each(&SessionObserver::picture_shown, picture, valid_until, lit_from);

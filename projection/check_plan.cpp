@@ -65,6 +65,7 @@ public:
         }
         check_in_volume(item.name, all_points(item));
         check_near_skin(item.name, skin_points(item));
+        note_on_surface(item);
         check_side(item.name, all_points(item));
         check_own(item);
         check_place(item);
@@ -92,6 +93,8 @@ public:
             verdict_.stops.push_back(
                 fmt::format("{} of {} items lie more than {:.0f} mm from the skin (median of all points {:.1f} mm)",
                             far_items_, items_, settings_.near_skin_mm, verdict_.median_to_skin_mm));
+        check_in_air("lines and boreholes", surface_points_, settings_.in_air_mm);
+        check_in_air("entries", entries_, std::numeric_limits<double>::infinity());
         check_alternatives();
         return std::move(verdict_);
     }
@@ -108,15 +111,8 @@ private:
         if (!volume_) return;
         double out_mm = 0;
         Vector3d worst = Vector3d::Zero();
-        const Vector3d spacing = volume_->ct_from_voxel.linear().colwise().norm().transpose();
-        for (const auto& p : points) {
-            const Vector3d v = volume_->ct_from_voxel.inverse() * p;
-            for (int axis = 0; axis < 3; ++axis) {
-                const double beyond =
-                    std::max(-v[axis], v[axis] - (volume_->size[static_cast<std::size_t>(axis)] - 1)) * spacing[axis];
-                if (beyond > out_mm) out_mm = beyond, worst = p;
-            }
-        }
+        for (const auto& p : points)
+            if (const double beyond = outside_mm(p); beyond > out_mm) out_mm = beyond, worst = p;
         if (out_mm > settings_.outside_volume_mm) {
             verdict_.outside_volume = true;
             stop(name, "its point ({:.0f}, {:.0f}, {:.0f}) lies {:.0f} mm outside the volume", worst.x(), worst.y(),
@@ -174,6 +170,33 @@ private:
         if (far_mm > settings_.too_far_mm)
             stop(name, "it is {:.1f} mm from the skin, too far to be drawn (at most {:.0f} mm)", far_mm,
                  settings_.too_far_mm);
+    }
+
+    void note_on_surface(const Trajectory& t) { entries_.push_back(t.entry_in_ct); }
+    void note_on_surface(const CutPlane&) {}
+    template <class Item>
+    void note_on_surface(const Item& item) {
+        const std::vector<Vector3d> points = skin_points(item);
+        surface_points_.insert(surface_points_.end(), points.begin(), points.end());
+    }
+
+    /// Plans are made on skin or bone, and entries of some programs a little before it. Where nearly all lie in the air
+    /// the plan is of another scan or in another frame, or the skin is not all there.
+    void check_in_air(const char* what, const std::vector<Vector3d>& points, double stopped_from_mm) {
+        constexpr std::size_t kFew = 3, kSome = 100;
+        constexpr double kNearlyAll = 0.9;
+        if (points.size() < kFew) return;
+        std::vector<double> over_mm;
+        std::size_t all = 0;
+        for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / kSome, ++all)
+            if (const double mm = to_skin_mm(points[i]); mm > settings_.above_skin_mm && !in_the_body(skin_, points[i]))
+                over_mm.push_back(mm);
+        if (static_cast<double>(over_mm.size()) < kNearlyAll * static_cast<double>(all)) return;
+        const auto middle = over_mm.begin() + static_cast<std::ptrdiff_t>(over_mm.size() / 2);
+        std::nth_element(over_mm.begin(), middle, over_mm.end());
+        const std::string said =
+            fmt::format("the plan's {} lie in the air, a median of {:.1f} mm over the skin", what, *middle);
+        (*middle > stopped_from_mm ? verdict_.stops : verdict_.warnings).push_back(said);
     }
 
     /// Where it would be drawn there is skin, and that on its axis. What is far, or points out, has been stopped.
@@ -268,6 +291,7 @@ private:
     int items_ = 0, far_items_ = 0;
     std::map<std::string, int> names_, structures_;
     std::vector<Vector3d> points_;
+    std::vector<Vector3d> surface_points_, entries_;  ///< of lines and boreholes; of trajectories
     std::optional<MidPlane> mid_plane_;
     bool looked_for_mid_plane_ = false;
 };

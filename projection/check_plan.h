@@ -22,6 +22,7 @@ struct PlanCheckSettings {
     double max_share_far =
         0.5;  ///< of the items farther than `near_skin_mm` from the skin; from here on the plan is stopped
     double above_skin_mm = 2;        ///< a risk structure that lies wholly outside, by more than this, is stopped
+    double in_air_mm = 5;            ///< lines and boreholes that nearly all lie this far outside are stopped
     double structure_outside = 0.1;  ///< a larger share of one outside of the body is warned of
     double structure_cut = 0.05;     ///< a larger share outside of the volume is stopped, a smaller one warned of
     double turned_fit_mm =
@@ -50,7 +51,7 @@ struct PlanVerdict {
 
 /// Judges a plan by its patient's skin: entries near the skin, on their axes and not on the end of the volume, targets
 /// and risk structures inside, nothing swapped, zero, NaN or outside the volume, sides as their names say, and no
-/// turned or mirrored copy of the plan that fits the skin far better than the plan does.
+/// turned or mirrored copy of the plan that fits the skin far better than the plan does, and not all of it in the air.
 PlanVerdict check_plan(const Plan& plan, const SkinSurface& skin, const std::optional<VolumeBox>& volume = std::nullopt,
                        const PlanCheckSettings& settings = {});
 

@@ -25,6 +25,7 @@ void write_room_file(const SimulateOptions& options, const simulation::ServeSett
     room.left.device = served.left.serial;
     room.right.device = served.right.serial;
     room.left.transfer_ms = room.right.transfer_ms = 1e3 * seconds(served.latency);
+    room.left.global_shutter = room.right.global_shutter = true;
     room.together = true;
     write_room(room, options.out / "room.json");
 }

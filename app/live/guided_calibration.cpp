@@ -71,6 +71,10 @@ public:
         }
         return frame;
     }
+    /// Of the first two pictures another frame may be wanted.
+    bool wait_until_exposed(Instant not_before, std::chrono::milliseconds patience) override {
+        return frames_ >= 2 && cameras_.wait_until_exposed(not_before + later_, patience);
+    }
     std::string doubt() const override { return cameras_.doubt(); }
 
 private:

@@ -52,6 +52,9 @@ public:
     CameraTap(StereoCamera& cameras, LiveView& view) : cameras_(cameras), view_(view) {}
     StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override;
     StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override;
+    bool wait_until_exposed(Instant not_before, std::chrono::milliseconds patience) override {
+        return cameras_.wait_until_exposed(not_before, patience);
+    }
     std::string doubt() const override { return cameras_.doubt(); }
 
 private:

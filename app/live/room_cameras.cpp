@@ -29,6 +29,7 @@ GenicamSettings genicam_settings(const RoomCamera& camera, const std::string& na
     settings.frames_hz = camera.frames_hz;
     settings.region = camera.region;
     settings.transfer_ms = camera.transfer_ms;
+    settings.global_shutter = camera.global_shutter;
     return settings;
 }
 

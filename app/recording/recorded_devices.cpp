@@ -18,7 +18,8 @@ constexpr const char* kAsked[] = {"",
                                   "a frame",
                                   "a device (which failed)",
                                   "to go on with a scan (which was stopped)",
-                                  "what the cameras say of themselves"};
+                                  "what the cameras say of themselves",
+                                  "the end of an exposure"};
 
 /// As it was thrown then: "Left camera: it sends nothing".
 DeviceError failed(const RecordedInput& input) {
@@ -65,6 +66,14 @@ StereoFrame RecordedDevices::grab(Instant, std::chrono::milliseconds) {
     if (given_.frames++ == 0) given_.first_at = frame.at;
     given_.last_number = frame.number, given_.last_at = frame.at;
     return frame;
+}
+
+/// Recorded where it could be told.
+bool RecordedDevices::wait_until_exposed(Instant, std::chrono::milliseconds) {
+    const auto& next = cursor_.peek();
+    if (!next.input || next.input->kind != Kind::exposed) return false;
+    cursor_.take();
+    return true;
 }
 
 /// Recorded where it changed.

@@ -27,6 +27,7 @@ public:
     /// In a destructor, too, where nothing may be thrown: what differs is found at the next answer.
     void go_dark() noexcept override;
     StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override;
+    bool wait_until_exposed(Instant not_before, std::chrono::milliseconds patience) override;
     std::string doubt() const override;
     Instant now() const override;
     /// To be called between two pictures of a scan, where a person may have ended it: throws what was said then.

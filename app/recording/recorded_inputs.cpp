@@ -13,6 +13,10 @@ namespace {
     throw DamagedFileError(file, "what its devices answered cannot be understood", "Copy the file again.");
 }
 
+bool has_text(Kind kind) {
+    return kind != Kind::clock && kind != Kind::dark && kind != Kind::exposed;
+}
+
 }  // namespace
 
 std::string packed(const std::vector<RecordedInput>& inputs) {
@@ -24,7 +28,7 @@ std::string packed(const std::vector<RecordedInput>& inputs) {
         if (input.kind == Kind::shown || input.kind == Kind::frame)
             fields.add(static_cast<std::int64_t>(input.until.count()));
         if (input.kind == Kind::frame) fields.add(input.number);
-        if (input.kind != Kind::clock && input.kind != Kind::dark) fields.add_text(input.text);
+        if (has_text(input.kind)) fields.add_text(input.text);
         if (input.kind == Kind::failed || input.kind == Kind::stopped) fields.add_text(input.remedy);
     }
     return fields.bytes();
@@ -37,14 +41,14 @@ std::vector<RecordedInput> unpacked_inputs(std::string_view payload, const std::
         while (fields.left() > 0) {
             RecordedInput input;
             const auto kind = fields.next<std::uint8_t>();
-            if (kind < 1 || kind > 7) refuse(file);
+            if (kind < 1 || kind > 8) refuse(file);
             input.kind = static_cast<Kind>(kind);
             if (input.kind == Kind::clock || input.kind == Kind::shown || input.kind == Kind::frame)
                 input.at = Instant(fields.next<std::int64_t>());
             if (input.kind == Kind::shown || input.kind == Kind::frame)
                 input.until = Instant(fields.next<std::int64_t>());
             if (input.kind == Kind::frame) input.number = fields.next<std::uint64_t>();
-            if (input.kind != Kind::clock && input.kind != Kind::dark) input.text = fields.next_text();
+            if (has_text(input.kind)) input.text = fields.next_text();
             if (input.kind == Kind::failed || input.kind == Kind::stopped) input.remedy = fields.next_text();
             inputs.push_back(std::move(input));
         }

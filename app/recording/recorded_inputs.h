@@ -19,7 +19,8 @@ struct RecordedInput {
         frame = 4,    ///< exposed about `at` for `until`, with that number; its pictures have that hash
         failed = 5,   ///< a device threw `text`, with `remedy`
         stopped = 6,  ///< whoever asked ended the scan, saying `text`, `remedy`
-        doubt = 7     ///< the cameras say of themselves `text`; empty: nothing any more
+        doubt = 7,    ///< the cameras say of themselves `text`; empty: nothing any more
+        exposed = 8   ///< the next frame's shutters have closed
     };
     Kind kind = Kind::clock;
     Instant at{}, until{};

@@ -169,6 +169,14 @@ void SessionRecorder::clock_read(Instant now) noexcept {
     }
 }
 
+void SessionRecorder::frame_exposed() noexcept {
+    try {
+        const std::lock_guard lock(mutex_);
+        input({Kind::exposed, {}, {}, 0, {}, {}});
+    } catch (const std::exception&) {
+    }
+}
+
 void SessionRecorder::frame_taken(const StereoFrame& frame) noexcept {
     try {
         const std::string hash = hash_of(frame);

@@ -65,6 +65,7 @@ public:
               const std::vector<std::string>& details) noexcept override;
     void asked(SessionCall call, const std::vector<PointPair>& landmarks, int which) noexcept override;
     void clock_read(Instant now) noexcept override;
+    void frame_exposed() noexcept override;
     void frame_taken(const StereoFrame& frame) noexcept override;
     void picture_shown(const RgbImage& picture, Instant valid_until, Instant lit_from) noexcept override;
     void went_dark() noexcept override;

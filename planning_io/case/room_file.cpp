@@ -38,7 +38,7 @@ void check_trigger(const JsonValue& camera) {
 
 RoomCamera camera_of(const JsonValue& value) {
     value.has_only({"device", "pixel_format", "trigger", "line", "exposure_ms", "gain", "frames_hz", "transfer_ms",
-                    "region", "pipeline"});
+                    "region", "global_shutter", "pipeline"});
     check_trigger(value);
     RoomCamera camera;
     if (const auto pipeline = value.find("pipeline")) camera.pipeline = pipeline->text();
@@ -54,6 +54,7 @@ RoomCamera camera_of(const JsonValue& value) {
     camera.gain = number_in(value, "gain", -100, 1000);
     camera.frames_hz = number_in(value, "frames_hz", 0.1, 10'000);
     camera.transfer_ms = number_in(value, "transfer_ms", 0, 10'000);
+    if (const auto global = value.find("global_shutter")) camera.global_shutter = global->flag();
     if (const auto region = value.find("region")) {
         if (region->size() != 4) region->refuse("is not [x, y, width, height]");
         camera.region.emplace();
@@ -77,6 +78,7 @@ Json json_of(const RoomCamera& camera) {
     if (camera.frames_hz) json["frames_hz"] = *camera.frames_hz;
     if (camera.transfer_ms) json["transfer_ms"] = *camera.transfer_ms;
     if (camera.region) json["region"] = *camera.region;
+    if (camera.global_shutter) json["global_shutter"] = *camera.global_shutter;
     return json;
 }
 

@@ -18,6 +18,7 @@ struct RoomCamera {
     /// that it stamps.
     std::optional<double> transfer_ms;
     std::optional<std::array<int, 4>> region;  ///< x, y, width, height
+    std::optional<bool> global_shutter;        ///< GenICam: empty: as the camera says
 };
 
 /// Instead of cameras: what such cameras recorded.

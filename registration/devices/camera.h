@@ -99,6 +99,8 @@ public:
     /// What it does by itself and could not be told not to, a sentence each.
     virtual std::vector<std::string> notes() const { return {}; }
     virtual CameraLink link() const { return {}; }
+    /// All its rows are known to be exposed together: nothing that happens after an exposure is in its picture.
+    virtual bool global_shutter() const { return false; }
     virtual FrameQueue& frames() = 0;
 };
 

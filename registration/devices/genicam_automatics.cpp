@@ -71,8 +71,9 @@ void switch_off_exposure_and_gain(ArvCamera* camera, std::vector<std::string>& n
     }
 }
 
+constexpr const char* kShutter = "SensorShutterMode";
+
 void choose_shutter(Features& features, std::vector<std::string>& notes) {
-    constexpr const char* kShutter = "SensorShutterMode";
     if (!features.has(kShutter)) return;
     if (features.value(kShutter) != "Global") features.choose(kShutter, "Global");
     if (features.value(kShutter) == "Rolling")
@@ -99,6 +100,12 @@ std::vector<std::string> switch_off_automatics(ArvCamera* camera) {
     choose_shutter(features, notes);
     look_for_mirror(features, notes);
     return notes;
+}
+
+Shutter shutter_of(ArvCamera* camera) {
+    Features features(camera);
+    const std::string mode = features.has(kShutter) ? features.value(kShutter) : "";
+    return mode.empty() ? Shutter::unknown : mode == "Global" ? Shutter::global : Shutter::other;
 }
 
 }  // namespace planlight

@@ -14,4 +14,8 @@ namespace planlight {
 /// bends a head that moves, a mirrored picture fits no rig. Features that a camera has not are left out.
 std::vector<std::string> switch_off_automatics(ArvCamera* camera);
 
+/// Which shutter the camera says it has.
+enum class Shutter { unknown, global, other };
+Shutter shutter_of(ArvCamera* camera);
+
 }  // namespace planlight

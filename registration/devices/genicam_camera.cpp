@@ -67,6 +67,7 @@ GenicamCamera::GenicamCamera(GenicamSettings settings, FrameBell& bell, const Cl
     notes_ = setup.notes;
     width_ = setup.width;
     height_ = setup.height;
+    global_shutter_ = setup.global_shutter;
     start();
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
@@ -160,6 +161,8 @@ GenicamCamera::Setup GenicamCamera::configure() {
     Setup setup;
     set_format_and_region();
     setup.notes = switch_off_automatics(camera);
+    const Shutter shutter = shutter_of(camera);
+    setup.global_shutter = shutter != Shutter::other && settings_.global_shutter.value_or(shutter == Shutter::global);
     set_exposure_and_gain();
     set_trigger();
     const double exposure_us = arv_camera_get_exposure_time(camera, failure.slot());

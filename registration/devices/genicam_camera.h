@@ -32,6 +32,7 @@ struct GenicamSettings {
     std::optional<std::array<int, 4>> region;  ///< x, y, width, height
     /// From the end of the exposure to the arrival of the quickest frame; empty: the payload over a gigabit.
     std::optional<double> transfer_ms;
+    std::optional<bool> global_shutter;  ///< empty: as the camera says; true says it for one that cannot
     Instant silence_allowed = std::chrono::milliseconds(500);  ///< without a frame; then it is lost
     Instant look_every = std::chrono::milliseconds(150);       ///< whether exposure and gain are still what they were
 };
@@ -55,12 +56,14 @@ public:
     const std::string& serial() const override { return serial_; }
     std::vector<std::string> notes() const override { return notes_; }
     CameraLink link() const override { return link_; }
+    bool global_shutter() const override { return global_shutter_; }
 
 private:
     struct Device;
     struct Setup {
         std::vector<std::string> notes;
         int width = 0, height = 0;
+        bool global_shutter = false;
     };
     void open();
     std::string serial_of_device() const;
@@ -84,6 +87,7 @@ private:
     std::string name_, serial_;
     std::vector<std::string> notes_;
     int width_ = 0, height_ = 0;
+    bool global_shutter_ = false;
     CameraLink link_;
     std::unique_ptr<Device> device_;
     // Of the camera's thread, once it runs.

@@ -43,7 +43,9 @@ StereoFrame PairedCameras::newest(Instant not_before, std::chrono::milliseconds 
 void PairedCameras::collect() {
     std::vector<CameraFrame> left = left_->frames().take_all(), right = right_->frames().take_all();
     lefts_seen_ += left.size();
+    for (const CameraFrame& frame : right) right_times_.add(frame);
     for (const CameraFrame& frame : left) {
+        left_times_.add(frame);
         const Instant since = frame.at - last_left_;
         if (last_left_ > Instant{} && since > Instant{})
             interval_ = interval_ == Instant{} ? since : std::min(since, interval_ + interval_ / 8);
@@ -132,6 +134,34 @@ std::string PairedCameras::doubt() const {
                                counts.lately);
     }
     return {};
+}
+
+/// When both shutters have surely closed on the first pair that begins at or after a moment; empty: not known.
+std::optional<Instant> PairedCameras::closing_of_pair(Instant not_before) const {
+    const auto left = left_times_.first_after(not_before), right = right_times_.first_after(not_before);
+    if (!left || !right) return std::nullopt;
+    const Instant allowed = allowed_apart(settings_, std::min(left->exposure, right->exposure), interval_);
+    // Where one of them begins before that moment and its partner after, both wait for the next.
+    const Instant apart = right->at - left->at;
+    const ExposureTimes::Expected* later = apart > Instant{} ? &*right : &*left;
+    if (apart >= -allowed && apart <= allowed) return std::max(left->closed, right->closed);
+    return later->closed + allowed;
+}
+
+bool PairedCameras::wait_until_exposed(Instant not_before, std::chrono::milliseconds patience) {
+    if (!left_->global_shutter() || !right_->global_shutter()) return false;
+    const Instant until = clock_.now() + patience;
+    for (;;) {
+        collect();
+        const auto closing = closing_of_pair(not_before);
+        if (!closing || *closing > until || left_->frames().fault() || right_->frames().fault()) return false;
+        const Instant now = clock_.now();
+        if (now >= *closing) return true;
+        // A frame that comes meanwhile tells it better.
+        std::unique_lock lock(bell_.mutex);
+        bell_.rung.wait_for(lock, std::min(*closing - now, Instant(std::chrono::milliseconds(20))),
+                            [&, rings = bell_.rings] { return bell_.rings != rings; });
+    }
 }
 
 StereoFrame PairedCameras::wait_for_pair(Instant not_before, std::chrono::milliseconds patience, bool newest) {

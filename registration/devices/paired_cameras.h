@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "registration/devices/camera.h"
+#include "registration/devices/exposure_times.h"
 #include "registration/devices/stereo_camera.h"
 
 namespace planlight {
@@ -44,6 +45,10 @@ public:
     /// As `grab`, but the newest pair that is there, for following a patient.
     StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override;
 
+    /// By the steps in which both cameras expose. False: they do not run evenly, that is not known yet, or a shutter is
+    /// not known to be global: its last rows would see what comes after.
+    bool wait_until_exposed(Instant not_before, std::chrono::milliseconds patience) override;
+
     /// A camera that is behind, or many of whose frames lose packets.
     std::string doubt() const override;
 
@@ -54,6 +59,7 @@ public:
 private:
     StereoFrame wait_for_pair(Instant not_before, std::chrono::milliseconds patience, bool newest);
     void collect();
+    std::optional<Instant> closing_of_pair(Instant not_before) const;
     std::optional<StereoFrame> next_pair(Instant not_before);
     [[noreturn]] void refuse(std::chrono::milliseconds patience) const;
 
@@ -67,6 +73,7 @@ private:
     PairCounts counts_;
     std::optional<Instant> nearest_;    ///< of two that made no pair in this call: how far they were apart
     Instant last_left_{}, interval_{};  ///< of the left camera's frames; 0: not known yet
+    ExposureTimes left_times_, right_times_;
 };
 
 }  // namespace planlight

@@ -21,6 +21,10 @@ public:
         return grab(not_before, patience);
     }
 
+    /// Waits until the shutters of the frame that `grab(not_before)` will give have closed, which is before it has come
+    /// from the cameras. False, at once: that cannot be told here, or no frame will come in `patience`; `grab` tells.
+    virtual bool wait_until_exposed(Instant /*not_before*/, std::chrono::milliseconds /*patience*/) { return false; }
+
     /// What is wrong with the cameras now though frames come, in a sentence that names the camera; empty: nothing.
     virtual std::string doubt() const { return {}; }
 };

@@ -72,6 +72,7 @@ public:
         timed(&SessionRecorder::asked, call, landmarks, which);
     }
     void clock_read(Instant now) noexcept override { timed(&SessionRecorder::clock_read, now); }
+    void frame_exposed() noexcept override { timed(&SessionRecorder::frame_exposed); }
     void frame_taken(const StereoFrame& frame) noexcept override { timed(&SessionRecorder::frame_taken, frame); }
     void picture_shown(const RgbImage& picture, Instant valid_until, Instant lit_from) noexcept override {
         timed(&SessionRecorder::picture_shown, picture, valid_until, lit_from);

@@ -47,6 +47,9 @@ public:
     void clock_read(Instant now) noexcept override {
         pass([&](SessionObserver& next) { next.clock_read(now); });
     }
+    void frame_exposed() noexcept override {
+        pass([&](SessionObserver& next) { next.frame_exposed(); });
+    }
     void frame_taken(const StereoFrame& frame) noexcept override {
         pass([&](SessionObserver& next) { next.frame_taken(frame); });
     }
@@ -151,8 +154,13 @@ private:
     public:
         explicit Cameras(PlayedRoom& room) : room_(room) {}
         StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override {
+            if (exposed_) return *std::exchange(exposed_, {});
             room_.scanned_one();
             return room_.rig_.cameras().grab(not_before, patience);
+        }
+        bool wait_until_exposed(Instant not_before, std::chrono::milliseconds patience) override {
+            if (room_.how_.exposures_told) exposed_ = grab(not_before, patience);
+            return exposed_.has_value();
         }
         StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override {
             room_.followed_one();
@@ -163,6 +171,7 @@ private:
 
     private:
         PlayedRoom& room_;
+        std::optional<StereoFrame> exposed_;  ///< and not yet given
     };
     class Light final : public Projector {
     public:

@@ -58,7 +58,8 @@ struct PlayedSession {
     bool landmarks = false;         ///< clicked landmarks go into the match, and are wrong
     /// Landmarks are clicked 6 mm aside, so that the match needs a person's look; the person says yes, or no.
     enum class Look { not_needed, confirmed, refused } look = Look::not_needed;
-    std::string doubt;  ///< what the cameras say of themselves while the patient is followed, now and then
+    bool exposures_told = false;  ///< the cameras tell the end of an exposure before they give its frame
+    std::string doubt;            ///< what the cameras say of themselves while the patient is followed, now and then
 };
 
 /// How it went.

@@ -14,7 +14,8 @@ TEST(RecordedInputs, ComeBackAsTheyWere) {
                                             {Kind::dark, {}, {}, 0, {}, {}},
                                             {Kind::frame, Instant(1), Instant(2), 77, "other", {}},
                                             {Kind::failed, {}, {}, 0, "Left camera: is gone", "Plug it in."},
-                                            {Kind::stopped, {}, {}, 0, "DARK", "Scan again."}};
+                                            {Kind::stopped, {}, {}, 0, "DARK", "Scan again."},
+                                            {Kind::exposed, {}, {}, 0, {}, {}}};
     const std::string bytes = packed(inputs);
     const auto again = unpacked_inputs(bytes, "x");
     ASSERT_EQ(again.size(), inputs.size());

@@ -57,6 +57,7 @@ std::vector<RecordedKind> without_faults() {
                          {R"("call":"hide_item")", R"("call":"light_item")", R"("call":"show_item")"}));
     kinds.back().how.hide_items = true;
     kinds.back().how.card = {"E. M.", "RIGHT"};
+    kinds.back().how.exposures_told = true;
     kinds.push_back(
         kind("a head that moves at 60 mm/s", 26, 16, {R"({"what":"updated")", R"("what":"gate","call":"step")"}));
     kinds.back().how.speed_mm_s = 60;

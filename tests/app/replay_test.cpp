@@ -71,6 +71,7 @@ protected:
         how.seed = 2;
         how.updates = 24;
         how.dark_in_scan = true;  // a refusal that is none of an update
+        how.exposures_told = true;
         const fs::path file = folder().path() / "sound.plrec";
         test::record_session(how, test::example_case(), RecordMode::all, file);
         chunks_ = test::chunks_of(file);
@@ -130,6 +131,25 @@ TEST_F(SpoiltRecording, AClockThatSaysAnotherTimeGivesAnotherPictureOrWord) {
         if (input.kind == RecordedInput::Kind::clock) input.at += std::chrono::milliseconds(3);
     chunks[at].payload = packed(inputs);
     EXPECT_TRUE(replay(chunks).difference);
+}
+
+TEST_F(SpoiltRecording, OfWhoseExposuresOneIsNotToldAnotherOrderIsNamed) {
+    auto chunks = chunks_;
+    const auto told = [](const RecordedInput& input) { return input.kind == RecordedInput::Kind::exposed; };
+    for (auto& chunk : chunks) {
+        if (chunk.type != chunk_types::kInputs) continue;
+        auto inputs = unpacked_inputs(chunk.payload, "x");
+        const auto first = std::ranges::find_if(inputs, told);
+        if (first == inputs.end()) continue;
+        inputs.erase(first);
+        chunk.payload = packed(inputs);
+        const ReplayResult replayed = replay(chunks);
+        ASSERT_TRUE(replayed.difference);
+        EXPECT_NE(replayed.difference->what.find("the order of things"), std::string::npos)
+            << replayed.difference->what;
+        return;
+    }
+    ADD_FAILURE() << "none was told";
 }
 
 TEST_F(SpoiltRecording, WhatWasDroppedEndsTheReplayWithWords) {

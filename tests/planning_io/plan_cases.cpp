@@ -337,6 +337,11 @@ std::vector<PlanOnHead> plans_on_head() {
         p.boreholes[0].position_in_ct = hole + 15 * analytic_head_normal(hole);
         p.trajectories[0].entry_in_ct = entry + 15 * analytic_head_normal(entry);
     });
+    add("borehole and line 7 mm over the skin", "lie in the air", [&](Plan& p) {
+        const auto lift = [](Vector3d& v) { v += 7 * analytic_head_normal(v); };
+        lift(p.boreholes[0].position_in_ct);
+        for (auto& v : p.osteotomy_lines[0].points_in_ct) lift(v);
+    });
     add("a borehole 250 mm deep", "250 mm deep", [](Plan& p) { p.boreholes[0].depth_mm = 250; });
     add("an axis that points out of the body", "out of the body",
         [&](Plan& p) { p.boreholes[0].axis_in_ct = analytic_head_normal(hole); });

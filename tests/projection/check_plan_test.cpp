@@ -88,6 +88,34 @@ TEST(CheckPlan, WhatMustNotBeShownIsStoppedByNameAndNumber) {
                      "2 of 3 items lie more than 10 mm from the skin"));
 }
 
+/// As of a scan whose patient lay elsewhere, or one whose skin has lost a layer: each item alone might be meant.
+TEST(CheckPlan, APlanInTheAirIsStoppedAndOneOnTheBoneIsNot) {
+    const auto verdict_at = [](double over_mm, bool trajectories_alone = false) {
+        Plan plan = good_plan();
+        const double scale = (kRadius_mm + over_mm) / kRadius_mm;
+        plan.trajectories.push_back({"T2", on_ball(0.4, 0), on_ball(0.4, 0) * 0.5, 2, {}});
+        plan.trajectories.push_back({"T3", on_ball(0, 0.4), on_ball(0, 0.4) * 0.5, 2, {}});
+        for (Trajectory& t : plan.trajectories) t.entry_in_ct *= scale;
+        for (Borehole& b : plan.boreholes) b.position_in_ct *= scale;
+        for (Vector3d& p : plan.osteotomy_lines[0].points_in_ct) p *= scale;
+        if (trajectories_alone) plan.boreholes.clear(), plan.osteotomy_lines.clear();
+        return check_plan(plan, ball());
+    };
+    EXPECT_TRUE(
+        said(verdict_at(7.5).stops, "the plan's lines and boreholes lie in the air, a median of 7.5 mm over the skin"));
+    const PlanVerdict near = verdict_at(3.5);
+    EXPECT_TRUE(near.stops.empty()) << near.stops.front();
+    EXPECT_TRUE(said(near.warnings, "lie in the air, a median of 3.5 mm over the skin"));
+    const PlanVerdict entries = verdict_at(7.5, true);
+    EXPECT_TRUE(entries.stops.empty()) << "programs set entries before the skin, and their axes are right";
+    EXPECT_TRUE(said(entries.warnings, "the plan's entries lie in the air, a median of 7.5 mm over the skin"));
+    for (const double under_mm : {0.0, -1.0, -7.5}) {
+        const PlanVerdict verdict = verdict_at(under_mm);
+        EXPECT_TRUE(verdict.stops.empty()) << under_mm;
+        EXPECT_FALSE(said(verdict.warnings, "in the air")) << under_mm;
+    }
+}
+
 TEST(CheckPlan, WhatLiesOutsideTheVolumeIsStopped) {
     VolumeBox box;
     box.ct_from_voxel.translation() = Vector3d(-90, -90, -90);

@@ -55,6 +55,7 @@ public:
         room_.right.device = "SIM-R";
         room_.left.exposure_ms = room_.right.exposure_ms = 10;
         room_.left.transfer_ms = room_.right.transfer_ms = 1e3 * seconds(serve.latency);
+        room_.left.global_shutter = room_.right.global_shutter = true;
         calibration_ = rig_.calibration();
         calibration_.serials = {"SIM-L", "SIM-R", ""};
         ProjectorKeeperSettings keeper;

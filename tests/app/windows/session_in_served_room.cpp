@@ -254,6 +254,7 @@ int run(const std::string& program, unsigned seeds) {
         room.right.device = "SIM-R";
         room.left.exposure_ms = room.right.exposure_ms = 10;
         room.left.transfer_ms = room.right.transfer_ms = 1e3 * seconds(serve.latency);
+        room.left.global_shutter = room.right.global_shutter = true;
         RigCalibration calibration = rig_to_operate_with(rig.calibration(), seed);
         calibration.serials = {"SIM-L", "SIM-R", ""};
         ProjectorKeeperSettings keeper;

@@ -22,6 +22,7 @@ TEST(RoomFile, ReadsBackAndItsPathsAreBesideIt) {
     room.left.region = {8, 16, 1920, 1200};
     room.right.device = "192.168.7.2";
     room.right.transfer_ms = 18;
+    room.right.global_shutter = true;
     room.max_apart_ms = 0.5;
     write_room(room, folder.path() / "room.json");
     const RoomFile back = read_room(folder.path() / "room.json");
@@ -35,6 +36,8 @@ TEST(RoomFile, ReadsBackAndItsPathsAreBesideIt) {
     EXPECT_FALSE(back.left.gain);
     EXPECT_EQ(back.left.region, room.left.region);
     EXPECT_EQ(back.right.transfer_ms, 18);
+    EXPECT_EQ(back.right.global_shutter, true);
+    EXPECT_FALSE(back.left.global_shutter);
     EXPECT_EQ(back.max_apart_ms, 0.5);
 }
 

@@ -60,6 +60,15 @@ public:
         settings.device = "T-17";
         return GenicamCamera(settings, bell, clock).notes();
     }
+    /// `said`: by room.json.
+    bool global_shutter(std::optional<bool> said) {
+        FrameBell bell;
+        const SteadyClock clock;
+        GenicamSettings settings;
+        settings.device = "T-17";
+        settings.global_shutter = said;
+        return GenicamCamera(settings, bell, clock).global_shutter();
+    }
 
 private:
     test::TemporaryFolder folder_;
@@ -79,6 +88,23 @@ TEST(GenicamAutomatics, AShutterThatCanBeGlobalIsSoAndOneThatCannotIsSaid) {
     const auto notes = cannot.notes();
     ASSERT_EQ(notes.size(), 1U);
     EXPECT_NE(notes[0].find("its shutter rolls"), std::string::npos) << notes[0];
+}
+
+TEST(GenicamAutomatics, AShutterIsGlobalWhereCameraOrRoomSaysSoAndNeverAgainstTheCamera) {
+    const OneAtATime turn;
+    {
+        CameraWithFeatures says_global(feature("SensorShutterMode", {"Global"}, kFree), kFree, 0);
+        EXPECT_TRUE(says_global.global_shutter({}));
+        EXPECT_FALSE(says_global.global_shutter(false));
+    }
+    {
+        CameraWithFeatures says_rolling(feature("SensorShutterMode", {"Rolling"}, kFree), kFree, 0);
+        EXPECT_FALSE(says_rolling.global_shutter({}));
+        EXPECT_FALSE(says_rolling.global_shutter(true));
+    }
+    CameraWithFeatures says_nothing("", kFree, 0);
+    EXPECT_FALSE(says_nothing.global_shutter({}));
+    EXPECT_TRUE(says_nothing.global_shutter(true));
 }
 
 TEST(GenicamAutomatics, ATestPictureIsSwitchedOffAndAMirroredPictureIsSaid) {

@@ -155,5 +155,87 @@ TEST_F(PairedCamerasTest, NoOldPictureIsTakenForALiveOne) {
     EXPECT_EQ(left->frames().counts().dropped, 46u);
 }
 
+/// Both expose every 40 ms for 10 ms, the first from 100 ms on.
+struct ExposuresToCome : PairedCamerasTest {
+    void expose(int from, int to) {
+        for (int i = from; i < to; ++i) {
+            left->expose(105 + 40 * i, static_cast<std::uint8_t>(i));
+            right->expose(105.2 + 40 * i, static_cast<std::uint8_t>(i));
+            cameras->wait_until_exposed({}, {});  // or only the newest four would be looked at
+        }
+        clock.t = std::max(clock.t, Instant(milliseconds(100 + 40 * to)));  // the next begins
+    }
+};
+
+TEST_F(ExposuresToCome, AreOverBeforeTheirFrameHasCome) {
+    expose(0, 9);  // until 430 ms; the next are at 460 to 470 and at 500 to 510 ms
+    ASSERT_TRUE(cameras->wait_until_exposed(milliseconds(465), milliseconds(2000)));
+    EXPECT_GE(clock.t, Instant(milliseconds(510)));
+    EXPECT_LE(clock.t, Instant(milliseconds(516)));
+    expose(9, 11);
+    const StereoFrame frame = cameras->grab(milliseconds(465), milliseconds(100));
+    EXPECT_EQ(frame.left.at(0, 0), 10) << "that frame, and none was taken by the waiting";
+    EXPECT_LE(frame.at + frame.exposure / 2, clock.t);
+}
+
+TEST_F(ExposuresToCome, AreKnownThoughFramesWereLost) {
+    expose(0, 4);
+    expose(6, 9);
+    ASSERT_TRUE(cameras->wait_until_exposed(milliseconds(465), milliseconds(2000)));
+    EXPECT_GE(clock.t, Instant(milliseconds(510)));
+    EXPECT_LE(clock.t, Instant(milliseconds(516)));
+}
+
+TEST_F(ExposuresToCome, OfWhichOneBeginsTooEarlyAndItsPartnerDoesNotAreBothNotMeant) {
+    expose(0, 9);
+    ASSERT_TRUE(cameras->wait_until_exposed(from_seconds(0.4591), milliseconds(2000)));
+    EXPECT_GE(clock.t, Instant(milliseconds(510))) << "left begins at 460 ms: with the margin it is too early";
+}
+
+TEST_F(ExposuresToCome, AreNotToldWhereNobodyCanKnowThem) {
+    const auto told = [&] { return cameras->wait_until_exposed(clock.t, milliseconds(2000)); };
+    expose(0, 4);
+    EXPECT_FALSE(told()) << "too few frames";
+    expose(4, 9);
+    EXPECT_TRUE(told());
+    EXPECT_FALSE(cameras->wait_until_exposed(clock.t + std::chrono::seconds(3), milliseconds(5000))) << "too far";
+    EXPECT_FALSE(cameras->wait_until_exposed(clock.t + milliseconds(100), milliseconds(50))) << "after the patience";
+    left->has_global_shutter(false);
+    EXPECT_FALSE(told()) << "its last rows are open when the first have closed";
+    left->has_global_shutter(true);
+    EXPECT_TRUE(told());
+    right->frames().fail({"nothing came from it for 500 ms", "Look."});
+    EXPECT_FALSE(told());
+    right->frames().recovered();
+    for (int i = 0; i < 9; ++i) {  // as computers stamp them that are busy
+        left->expose(1000 + 40 * i + (i % 3) * 5, 1);
+        right->expose(1000 + 40 * i + (i % 3) * 5, 1);
+        told();
+    }
+    clock.t = milliseconds(1340);
+    EXPECT_FALSE(told()) << "no even steps";
+}
+
+TEST_F(ExposuresToCome, AreNotReckonedOverSecondsInWhichNobodyLooked) {
+    expose(0, 9);
+    for (int i = 200; i < 204; ++i) left->expose(105 + 40 * i, 1), right->expose(105 + 40 * i, 1);
+    clock.t = milliseconds(8300);
+    EXPECT_FALSE(cameras->wait_until_exposed(clock.t, milliseconds(2000)));
+    left->expose(105 + 40 * 204, 1), right->expose(105 + 40 * 204, 1);
+    EXPECT_TRUE(cameras->wait_until_exposed(clock.t, milliseconds(2000)));
+}
+
+TEST_F(ExposuresToCome, BeginAnewWithAnotherExposureOrAClockThatWasSet) {
+    expose(0, 9);
+    left->expose(465, 1, 25);
+    right->expose(465, 1, 25);
+    clock.t = milliseconds(500);
+    EXPECT_FALSE(cameras->wait_until_exposed(clock.t, milliseconds(2000)));
+    expose(12, 21);
+    EXPECT_TRUE(cameras->wait_until_exposed(clock.t, milliseconds(2000)));
+    left->expose(300, 1);
+    EXPECT_FALSE(cameras->wait_until_exposed(clock.t, milliseconds(2000)));
+}
+
 }  // namespace
 }  // namespace planlight

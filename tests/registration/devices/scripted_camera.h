@@ -20,7 +20,10 @@ public:
     std::vector<std::string> notes() const override { return notes_; }
     FrameQueue& frames() override { return frames_; }
 
+    bool global_shutter() const override { return global_; }
+
     void says(std::vector<std::string> notes) { notes_ = std::move(notes); }
+    void has_global_shutter(bool global) { global_ = global; }
     void expose(double at_ms, GrayImage picture, double exposure_ms = 10) {
         frames_.push({std::move(picture), from_seconds(at_ms / 1e3), from_seconds(exposure_ms / 1e3), {}});
     }
@@ -31,6 +34,7 @@ public:
 private:
     std::string name_;
     int width_, height_;
+    bool global_ = true;
     std::vector<std::string> notes_;
     FrameQueue frames_;
 };

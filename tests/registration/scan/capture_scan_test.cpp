@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "planning_io/types/error.h"
 #include "registration/scan/scan_surface.h"
 
@@ -136,6 +139,130 @@ TEST_F(CaptureScan, StripesForAnotherProjectorAreRefusedBeforeAnyLight) {
     EXPECT_THROW(run(), std::invalid_argument);
     EXPECT_EQ(projector.shown, 0);
     EXPECT_TRUE(projector.dark);
+}
+
+/// Cameras that expose for 10 ms every 40 ms, whose frames come 50 ms later, and a projector whose picture is light
+/// 25 to 40 ms after its order. What a frame sees is the light of its whole exposure.
+struct FreeRun : Clock, Projector, StereoCamera {
+    static constexpr Instant kStep = 40ms, kExposure = 10ms, kTransfer = 50ms, kSoonest = 25ms, kLatest = 40ms;
+    struct Light {
+        RgbImage picture;
+        Instant from, whole;  ///< the picture before it until `from`, both from there on, it alone from `whole` on
+    };
+    Instant time{1s};
+    std::vector<Light> lights;
+    std::vector<int> lost;  ///< exposures after the first picture whose frames never come, by their count
+    bool tells = true, dark = true;
+    int waited = 0;
+    Instant began_at{};
+
+    Instant now() const override { return time; }
+    int width() const override { return 64; }
+    int height() const override { return 48; }
+    Instant show(const RgbImage& picture, Instant) override {
+        if (lights.empty()) began_at = time;
+        dark = false;
+        lights.push_back({picture, time + kSoonest, time + kLatest});
+        time += 12ms;  // to the display
+        return lights.back().whole;
+    }
+    void go_dark() noexcept override { dark = true; }
+
+    static Instant first_opening(Instant not_before) {
+        return (not_before.count() + kStep.count() - 1) / kStep.count() * kStep;
+    }
+    bool wait_until_exposed(Instant not_before, std::chrono::milliseconds) override {
+        if (!tells) return false;
+        ++waited;
+        time = std::max(time, first_opening(not_before) + kExposure + 1ms);
+        return true;
+    }
+    StereoFrame grab(Instant not_before, std::chrono::milliseconds) override {
+        Instant opened = first_opening(not_before);
+        while (std::find(lost.begin(), lost.end(), (opened - first_opening(began_at)) / kStep) != lost.end())
+            opened += kStep;
+        time = std::max(time, opened + kExposure + kTransfer);
+        StereoFrame frame;
+        frame.at = opened + kExposure / 2;
+        frame.exposure = kExposure;
+        frame.left = GrayImage(64, 48);
+        constexpr int kParts = 10;
+        std::vector<double> sum(frame.left.pixels.size());
+        for (int part = 0; part < kParts; ++part) {
+            const Instant t = opened + kExposure * part / (kParts - 1);
+            for (std::size_t p = 0; p < sum.size(); ++p) {
+                double grey = 0;
+                for (const Light& light : lights)
+                    if (t >= light.whole)
+                        grey = light.picture.pixels[p][0];
+                    else if (t >= light.from)
+                        grey = 0.5 * (grey + light.picture.pixels[p][0]);
+                sum[p] += grey / kParts;
+            }
+        }
+        for (std::size_t p = 0; p < sum.size(); ++p)
+            frame.left.pixels[p] = static_cast<std::uint8_t>(sum[p] * 0.8 + 10);
+        frame.right = frame.left;
+        return frame;
+    }
+    StripeSettings stripes() const {
+        StripeSettings settings;
+        settings.width = 64;
+        settings.height = 48;
+        return settings;
+    }
+    ScanCapture run() { return capture_scan(*this, *this, *this, stripes()); }
+};
+
+void expect_every_point_decoded(const ScanCapture& capture) {
+    const DecodedView view = decode_stripes(capture.left, capture.stripes);
+    ASSERT_EQ(view.decoded, 64u * 48u);
+    for (std::size_t i = 0; i < view.column.size(); ++i) {
+        ASSERT_NEAR(view.column[i], static_cast<double>(i % 64), 0.05);
+        ASSERT_NEAR(view.row[i], static_cast<double>(i / 64), 0.05);
+    }
+}
+
+TEST(CaptureScanInFreeRun, APictureIsOrderedWhileTheFrameOfTheOneBeforeIsOnItsWay) {
+    FreeRun ahead, one_by_one;
+    one_by_one.tells = false;
+    const ScanCapture quick = ahead.run(), slow = one_by_one.run();
+    expect_every_point_decoded(quick);
+    EXPECT_EQ(quick.left.size(), slow.left.size());
+    for (std::size_t i = 0; i < quick.left.size(); ++i) EXPECT_EQ(quick.left[i].pixels, slow.left[i].pixels) << i;
+    const double pictures = static_cast<double>(quick.left.size() - 1);
+    EXPECT_NEAR(seconds(quick.ended - quick.began) / pictures, 0.080, 1e-6) << "every second exposure";
+    EXPECT_GT(seconds(slow.ended - slow.began) / pictures, 0.119);
+    EXPECT_TRUE(ahead.dark);
+}
+
+TEST(CaptureScanInFreeRun, WhereAFrameIsLostItsPictureIsTakenAgainForTheNextHasSeenAnother) {
+    FreeRun room;
+    room.lost = {7, 8, 19};
+    expect_every_point_decoded(room.run());
+    EXPECT_GT(room.lights.size(), stripe_sequence(room.stripes()).size()) << "a picture was shown twice";
+}
+
+TEST(CaptureScanInFreeRun, WhereManyFramesAreLostEachPictureWaitsForTheFrameBeforeIt) {
+    FreeRun room;
+    for (int i = 5; i < 400; i += 3) room.lost.push_back(i);
+    expect_every_point_decoded(room.run());
+    const std::size_t pictures = stripe_sequence(room.stripes()).size();
+    EXPECT_LT(room.waited, static_cast<int>(pictures) - 5);
+    EXPECT_LE(room.lights.size(), pictures + 6) << "of three pictures two orders more: its own and that of the next";
+}
+
+/// Its times may be wrong by more than the light is said to take.
+TEST(CaptureScanInFreeRun, NothingIsOrderedAheadOfAFrameWhereLightIsSaidToComeAtOnce) {
+    struct Fast : FreeRun {
+        Instant show(const RgbImage& picture, Instant until) override {
+            FreeRun::show(picture, until);
+            lights.back().from = lights.back().whole = time + 2ms;
+            return time + 2ms;
+        }
+    } room;
+    expect_every_point_decoded(room.run());
+    EXPECT_EQ(room.waited, 0);
 }
 
 }  // namespace
