@@ -124,9 +124,8 @@ void finish(Preparation& done, const Volume& volume, const LutSettings& lut, con
     Case& the_case = done.prepared;
     {
         const SkinSurface surface(the_case.skin);
-        PlanCheckSettings checks;
-        if (done.on_given_surface) checks.above_skin_mm = checks.too_far_mm;  // on bone much lies above it
-        const PlanVerdict of_plan = check_plan(the_case.plan, surface, box_of(volume), checks);
+        const PlanVerdict of_plan =
+            check_plan(the_case.plan, surface, box_of(volume), plan_checks_on(done.on_given_surface));
         add_warnings(of_plan.warnings, watcher, the_case);
         refuse_misfit(of_plan, done.judgement);
         done.drawing = draw_plan(the_case.plan, surface);

@@ -21,7 +21,7 @@ struct PlanCheckSettings {
     double side_margin_mm = 5;     ///< nearer to the mid-plane than this, an item may be called left or right
     double max_share_far =
         0.5;  ///< of the items farther than `near_skin_mm` from the skin; from here on the plan is stopped
-    double above_skin_mm = 2;        ///< a risk structure that lies wholly outside, by more than this, is stopped
+    double above_skin_mm = 2;        ///< less is not above; a risk structure that is so wholly is stopped
     double in_air_mm = 5;            ///< lines and boreholes that nearly all lie this far outside are stopped
     double structure_outside = 0.1;  ///< a larger share of one outside of the body is warned of
     double structure_cut = 0.05;     ///< a larger share outside of the volume is stopped, a smaller one warned of
@@ -29,6 +29,14 @@ struct PlanCheckSettings {
         1;  ///< a turned or mirrored copy of the plan with 90 % of its points this near to the skin ...
     double turned_gain = 3;  ///< ... and this many times nearer than half of the plan's own: stopped
 };
+
+/// On a surface that somebody else segmented, bone for example, much of a plan may lie above it. `given`: false: on
+/// skin.
+inline PlanCheckSettings plan_checks_on(bool given) {
+    PlanCheckSettings settings;
+    if (given) settings.above_skin_mm = settings.too_far_mm;
+    return settings;
+}
 
 /// The box of a volume's voxel centres: what lies outside was never scanned.
 struct VolumeBox {

@@ -38,6 +38,7 @@ struct Patient {
     std::optional<VolumeBox> box;
     std::vector<RiskStructure> risk_structures;  ///< of the case
     bool known = false;
+    bool on_given_surface = false;  ///< its skin is one that somebody else segmented
 };
 
 Patient read_patient(const PlanOptions& options) {
@@ -48,6 +49,7 @@ Patient read_patient(const PlanOptions& options) {
         patient.code = prepared.code;
         patient.volume_hash = prepared.volume_hash;
         patient.frame_of_reference_uid = prepared.frame_of_reference_uid;
+        patient.on_given_surface = prepared.skin_threshold == 0;
         patient.skin.emplace(std::move(prepared.skin));
         patient.risk_structures = std::move(prepared.plan.risk_structures);
     }
@@ -194,7 +196,7 @@ int run_plan(const PlanOptions& options) {
     for (const auto& note : read.notes) warn(note);
     PlanVerdict verdict;
     if (patient.skin) {
-        verdict = check_plan(read.plan, *patient.skin, patient.box);
+        verdict = check_plan(read.plan, *patient.skin, patient.box, plan_checks_on(patient.on_given_surface));
         for (const auto& warning : verdict.warnings) warn(warning);
         refuse_stopped_plan(verdict);
     } else if (patient.box) {

@@ -80,8 +80,9 @@ RegistrationResult register_point_pairs(const std::vector<PointPair>& pairs, con
         return result;
     }
     if (const double spread = spread_mm(pairs); spread < settings.min_spread_mm) {
-        result.reasons.push_back(
-            fmt::format("the landmarks lie nearly on one line ({:.0f} mm across it): take some further apart", spread));
+        result.reasons.push_back(fmt::format(
+            "the landmarks lie close together or nearly on one line ({:.0f} mm across it): take some further apart",
+            spread));
         return result;
     }
     result.patient_from_ct = result.initial_patient_from_ct = fit(pairs);

@@ -90,7 +90,7 @@ TEST(CheckPlan, WhatMustNotBeShownIsStoppedByNameAndNumber) {
 
 /// As of a scan whose patient lay elsewhere, or one whose skin has lost a layer: each item alone might be meant.
 TEST(CheckPlan, APlanInTheAirIsStoppedAndOneOnTheBoneIsNot) {
-    const auto verdict_at = [](double over_mm, bool trajectories_alone = false) {
+    const auto verdict_at = [](double over_mm, bool trajectories_alone = false, bool on_given_surface = false) {
         Plan plan = good_plan();
         const double scale = (kRadius_mm + over_mm) / kRadius_mm;
         plan.trajectories.push_back({"T2", on_ball(0.4, 0), on_ball(0.4, 0) * 0.5, 2, {}});
@@ -99,8 +99,11 @@ TEST(CheckPlan, APlanInTheAirIsStoppedAndOneOnTheBoneIsNot) {
         for (Borehole& b : plan.boreholes) b.position_in_ct *= scale;
         for (Vector3d& p : plan.osteotomy_lines[0].points_in_ct) p *= scale;
         if (trajectories_alone) plan.boreholes.clear(), plan.osteotomy_lines.clear();
-        return check_plan(plan, ball());
+        return check_plan(plan, ball(), std::nullopt, plan_checks_on(on_given_surface));
     };
+    const PlanVerdict over_bone = verdict_at(7.5, false, true);
+    EXPECT_TRUE(over_bone.stops.empty()) << "a plan for the skin, shown on bone";
+    EXPECT_FALSE(said(over_bone.warnings, "in the air"));
     EXPECT_TRUE(
         said(verdict_at(7.5).stops, "the plan's lines and boreholes lie in the air, a median of 7.5 mm over the skin"));
     const PlanVerdict near = verdict_at(3.5);
