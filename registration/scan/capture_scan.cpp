@@ -14,8 +14,8 @@ namespace {
 using namespace std::chrono_literals;
 constexpr auto kPatience = 2000ms;           // for a frame once the picture is lit
 constexpr Instant kDisplayDelayAtMost = 1s;  // from show() to the light, for the picture's expiry
-/// Sooner than this no light comes by the cameras' times that is said to come 25 ms after its order or later: a refresh
-/// of the display and what their times may be wrong by lie between. With less said, each picture waits.
+/// Light that is said to come so long after its order comes after it also by cameras' times that are some milliseconds
+/// wrong, and a refresh of the display sooner. Where it is said to come faster, each picture waits.
 constexpr Instant kSlowLight = 25ms;
 constexpr int kTakenAgainAtMost = 3;  // then each picture waits for the frame before it
 

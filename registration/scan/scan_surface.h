@@ -28,7 +28,8 @@ struct ScanCapture {
     std::vector<StripePattern> partial;
 };
 
-/// Shows every pattern and keeps the frame that saw it. The projector is dark afterwards, however it ends.
+/// Shows every pattern and keeps the frame that saw it. The projector is dark afterwards, however it ends. Where the
+/// cameras tell when their shutters have closed, the next pattern is ordered before the frame has come.
 /// `progress(done, of)` is called after every picture and may be empty. Throws DeviceError when a device fails.
 ScanCapture capture_scan(Projector& projector, StereoCamera& cameras, const Clock& clock, const StripeSettings& stripes,
                          const std::function<void(int, int)>& progress = {});
