@@ -76,6 +76,16 @@ struct CaptureScan : testing::Test {
     ScanCapture run() { return capture_scan(projector, cameras, clock, stripes); }
 };
 
+/// By cameras that look straight into the projector.
+void expect_every_point_decoded(const ScanCapture& capture) {
+    const DecodedView view = decode_stripes(capture.left, capture.stripes);
+    ASSERT_EQ(view.decoded, 64u * 48u);
+    for (std::size_t i = 0; i < view.column.size(); ++i) {
+        ASSERT_NEAR(view.column[i], static_cast<double>(i % 64), 0.05);
+        ASSERT_NEAR(view.row[i], static_cast<double>(i / 64), 0.05);
+    }
+}
+
 TEST_F(CaptureScan, EveryPictureIsSeenInOrderAndTheProjectorIsDarkAfterwards) {
     int calls = 0;
     const ScanCapture capture = capture_scan(projector, cameras, clock, stripes, [&](int done, int of) {
@@ -86,12 +96,7 @@ TEST_F(CaptureScan, EveryPictureIsSeenInOrderAndTheProjectorIsDarkAfterwards) {
     EXPECT_TRUE(projector.dark);
     EXPECT_EQ(calls, static_cast<int>(stripe_sequence(stripes).size()));
     EXPECT_LT(capture.began, capture.ended);
-    const DecodedView view = decode_stripes(capture.left, capture.stripes);
-    ASSERT_EQ(view.decoded, 64u * 48u);
-    for (std::size_t i = 0; i < view.column.size(); ++i) {
-        ASSERT_NEAR(view.column[i], static_cast<double>(i % 64), 0.05);
-        ASSERT_NEAR(view.row[i], static_cast<double>(i / 64), 0.05);
-    }
+    expect_every_point_decoded(capture);
 }
 
 TEST_F(CaptureScan, DarkAfterADeviceFails) {
@@ -213,15 +218,6 @@ struct FreeRun : Clock, Projector, StereoCamera {
     }
     ScanCapture run() { return capture_scan(*this, *this, *this, stripes()); }
 };
-
-void expect_every_point_decoded(const ScanCapture& capture) {
-    const DecodedView view = decode_stripes(capture.left, capture.stripes);
-    ASSERT_EQ(view.decoded, 64u * 48u);
-    for (std::size_t i = 0; i < view.column.size(); ++i) {
-        ASSERT_NEAR(view.column[i], static_cast<double>(i % 64), 0.05);
-        ASSERT_NEAR(view.row[i], static_cast<double>(i / 64), 0.05);
-    }
-}
 
 TEST(CaptureScanInFreeRun, APictureIsOrderedWhileTheFrameOfTheOneBeforeIsOnItsWay) {
     FreeRun ahead, one_by_one;
