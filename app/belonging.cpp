@@ -13,6 +13,7 @@
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/statistics.h"
 
 namespace planlight {
 namespace {
@@ -20,6 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMaxHidden_mm = 1;  // at a point of the plan, without a person's look
+/// Of the projector's focal length, without a person's look: a code that was read with another period looks like a
+/// zoom.
+constexpr double kMaxZoomed = 0.004;
 
 std::string begin_of(const std::string& hash) {
     return hash.substr(0, 8);
@@ -92,6 +96,12 @@ void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig,
     double hidden_mm = 0;
     for (const auto& p_in_ct : points_of(the_case.plan))
         hidden_mm = std::max(hidden_mm, hidden_light_mm(*rig, match.patient_from_ct * p_in_ct));
+    const double zoomed = rig->devices[static_cast<std::size_t>(RigDevice::projector)].focal_change;
+    if (rig->verdict == RigState::Verdict::corrected && std::abs(zoomed) > kMaxZoomed)
+        ask(fmt::format(
+            "The projector's focal length changed by {:.1f} % since the calibration, or the pictures are not "
+            "of the pattern that capture.json says.",
+            100 * zoomed));
     if (hidden_mm > kMaxHidden_mm)
         ask(fmt::format(
             "The rig moved in a way that one scan cannot tell ({}): at a point of the plan it may hide {:.1f} mm.",
@@ -123,7 +133,8 @@ void check_case(const RegistrationResult& match, const Case& the_case, const fs:
     if (!match.of_case.known()) {
         unknown.push_back(fmt::format("{} does not say of which case it is; it is taken for one of {}", file.string(),
                                       words_of(here)));
-    } else if (match.of_case.volume_hash != here.volume_hash || match.of_case.mesh_hash != here.mesh_hash) {
+    } else if (match.of_case.volume_hash != here.volume_hash || match.of_case.mesh_hash != here.mesh_hash ||
+               match.of_case.code != here.code) {  // of another plan: its verdict is on the points of that one
         throw InputError(file, fmt::format("is a match of {}, and this is {}", words_of(match.of_case), words_of(here)),
                          "Name the case that was matched, or register the patient on this one.");
     }
@@ -181,10 +192,37 @@ void check_poses(const std::optional<PosesOrigin>& origin, const RegistrationRes
                          "was matched.");
 }
 
+void check_points(const PointCloud& cloud, const std::optional<RigState>& rig, const fs::path& file) {
+    constexpr double kUsual_px = 1.5, kMost_px = 6;  // the projector's; of half of the points, and of 95 %
+    if (!rig || !rig->checked() || !rig->rig.whole() || cloud.points_in_rig.empty()) return;
+    constexpr const char* kRemedy =
+        "Scan again, or copy the file again. A cloud that was moved, turned or scaled on purpose is no scan of this "
+        "rig "
+        "any more: take its lines PLANLIGHT-RIG out.";
+    if (cloud.pixels_in_projector.size() != cloud.points_in_rig.size())
+        throw DamagedFileError(file, "says which rig it was made with, and its points lack projector_x and projector_y",
+                               kRemedy);
+    std::vector<double> off_px;
+    for (std::size_t i = 0; i < cloud.points_in_rig.size(); ++i) {
+        const auto pixel = project(rig->rig.projector, cloud.points_in_rig[i]);
+        off_px.push_back(pixel ? (*pixel - cloud.pixels_in_projector[i]).norm()
+                               : std::numeric_limits<double>::infinity());
+    }
+    const double usual_px = median(off_px), most_px = quantile(off_px, 0.95);
+    if (usual_px <= kUsual_px && most_px <= kMost_px) return;
+    throw DamagedFileError(
+        file,
+        fmt::format("has points that do not lie where its rig saw them (half of them more than {:.1f} "
+                    "pixels of the projector off, a twentieth more than {:.1f})",
+                    usual_px, most_px),
+        kRemedy);
+}
+
 PointCloud read_cloud_of(const RegistrationResult& match, const fs::path& cloud, const fs::path& file) {
     std::vector<std::string> comments;
     PointCloud points = read_cloud(cloud, {1, true}, &comments);
     const auto rig = rig_state_in(comments, cloud);
+    check_points(points, rig, cloud);
     if (rig && match.rig && !match.rig->capture_hash.empty() && rig->capture_hash != match.rig->capture_hash)
         throw InputError(cloud,
                          fmt::format("is the scan of capture {}, and {} is the match of capture {}",

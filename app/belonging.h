@@ -47,6 +47,11 @@ void check_rig(const RegistrationResult& match, const RigCalibration& rig, const
 void check_poses(const std::optional<PosesOrigin>& origin, const RegistrationResult& match, const RigCalibration& rig,
                  const std::filesystem::path& file, bool confirmed, std::vector<std::string>& unknown);
 
+/// Of a cloud that says which rig it was made with, and that this was checked: each point must lie where the
+/// projector's pixel that lit it puts it. Throws DamagedFileError where they do not: moved, turned or scaled since, by
+/// whatever program. Points that were deleted are no harm. Nothing is asked of other clouds.
+void check_points(const PointCloud& cloud, const std::optional<RigState>& rig, const std::filesystem::path& file);
+
 /// The cloud of a match, rig. Throws InputError where it says that it is of another scan than `match`, read from
 /// `file`.
 PointCloud read_cloud_of(const RegistrationResult& match, const std::filesystem::path& cloud,

@@ -13,6 +13,7 @@
 #include <ctime>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <new>
 #include <system_error>
@@ -49,8 +50,17 @@ void silence_results() {
 
 void add_to_log(const std::string& line) {
     if (!console().log) return;
-    fmt::print(console().log, "{} {}\n", today(), line);
+    std::fputs(fmt::format("{} {}\n", today(), line).c_str(), console().log);
     std::fflush(console().log);
+}
+
+/// A file with something in it that does not begin with a moment as a log does.
+bool is_no_log(const std::filesystem::path& file) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error) || std::filesystem::file_size(file, error) == 0) return false;
+    std::array<char, 20> begin{};
+    std::ifstream(file, std::ios::binary).read(begin.data(), begin.size());
+    return begin[4] != '-' || begin[7] != '-' || begin[10] != 'T' || begin[13] != ':' || begin[19] != 'Z';
 }
 
 /// Names from outside stand in it: no sign of theirs may steer the terminal. The lines of a table of ours stay lines.
@@ -66,9 +76,16 @@ std::string fit_to_print(const std::string& text) {
 
 }  // namespace
 
+void print_to_user(const std::string& text) {
+    std::fputs(text.c_str(), stderr);
+}
+
 void set_up_console(const ConsoleSettings& settings, bool result_wanted) {
     console().settings = settings;
     if (!settings.log_file.empty()) {
+        if (is_no_log(settings.log_file))
+            throw InputError(settings.log_file, "is there already, and is no log of Planlight: nothing is added to it",
+                             "Name another file with --log-file.");
         console().log = std::fopen(settings.log_file.c_str(), "ae");
         if (!console().log)
             throw DiskError(settings.log_file, fmt::format("cannot be written ({})", std::strerror(errno)),
@@ -79,7 +96,7 @@ void set_up_console(const ConsoleSettings& settings, bool result_wanted) {
 
 void log_line(const std::string& line) {
     add_to_log(line);
-    if (console().settings.verbose) fmt::print(stderr, "{}\n", line);
+    if (console().settings.verbose) print_to_user(fmt::format("{}\n", line));
 }
 
 ProgressBar::ProgressBar() : terminal_(isatty(STDERR_FILENO) == 1 && !console().settings.quiet) {}
@@ -106,15 +123,15 @@ void ProgressBar::show(const std::string& step, double share) {
 void ProgressBar::draw(int percent) {
     constexpr int kWidth = 40;
     const int done = kWidth * percent / 100;
-    fmt::print(stderr, "\r{:<18} [{}{}] {:3d} %", step_, std::string(static_cast<std::size_t>(done), '#'),
-               std::string(static_cast<std::size_t>(kWidth - done), ' '), percent);
+    print_to_user(fmt::format("\r{:<18} [{}{}] {:3d} %", step_, std::string(static_cast<std::size_t>(done), '#'),
+                              std::string(static_cast<std::size_t>(kWidth - done), ' '), percent));
     std::fflush(stderr);
     drawn_ = true;
     console().open_bar = this;
 }
 
 void ProgressBar::end_step() {
-    if (drawn_) fmt::print(stderr, "\n");
+    if (drawn_) print_to_user("\n");
     drawn_ = false;
     if (console().open_bar == this) console().open_bar = nullptr;
     if (!step_.empty())
@@ -132,7 +149,7 @@ void ProgressBar::note(const std::string& line) {
     end_step();
     const std::string printed = fit_to_print(line);
     add_to_log(printed);
-    if (!console().settings.quiet) fmt::print(stderr, "{}\n", printed);
+    if (!console().settings.quiet) print_to_user(fmt::format("{}\n", printed));
 }
 
 void ProgressBar::warn(const std::string& text) {
@@ -141,10 +158,10 @@ void ProgressBar::warn(const std::string& text) {
 }
 
 void warn(const std::string& text) {
-    if (console().open_bar) fmt::print(stderr, "\n");
+    if (console().open_bar) print_to_user("\n");
     const std::string printed = fit_to_print(text);
     add_to_log("warning: " + printed);
-    fmt::print(stderr, "warning: {}\n", printed);
+    print_to_user(fmt::format("warning: {}\n", printed));
 }
 
 std::string today() {
@@ -162,7 +179,7 @@ namespace {
 void say(const std::string& line) {
     const std::string printed = fit_to_print(line);
     add_to_log(printed);
-    fmt::print(stderr, "planlight: {}\n", printed);
+    print_to_user(fmt::format("planlight: {}\n", printed));
 }
 
 /// The disk would not take or give it; another name is no help.
@@ -189,7 +206,7 @@ bool printed_whole() {
 void end_log(int code) {
     std::FILE* log = std::exchange(console().log, nullptr);
     if (!log) return;
-    fmt::print(log, "{} exit {}\n", today(), code);
+    std::fputs(fmt::format("{} exit {}\n", today(), code).c_str(), log);
     const bool whole = std::fflush(log) == 0 && std::ferror(log) == 0;
     if (std::fclose(log) != 0 || !whole)
         say(fmt::format("the log {} could not be written to its end. Make room on its disk.",
@@ -236,6 +253,7 @@ void note_end_signals() {
     struct sigaction action {};
     action.sa_handler = [](int) { end_signal = end_signal + 1; };
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
 }
 
 bool asked_to_end() {

@@ -49,8 +49,12 @@ private:
 /// One line on stderr that begins with "warning: ".
 void warn(const std::string& text);
 
-/// From now on SIGINT, SIGTERM and SIGHUP are only noted, so that what runs can end in order. A read from the terminal
-/// that waits is broken off by them.
+/// Text on stderr as it is. Whether it arrives is not asked, here and in all others: a terminal that has gone, or a
+/// full disk behind it, must not end what runs.
+void print_to_user(const std::string& text);
+
+/// From now on SIGINT, SIGTERM and SIGHUP are only noted, so that what runs can end in order, and whoever read what is
+/// printed may go (SIGPIPE). A read from the terminal that waits is broken off by them.
 void note_end_signals();
 /// Whether one of them came since.
 bool asked_to_end();

@@ -1,7 +1,12 @@
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
 
 #include "app/commands/commands.h"
 #include "app/commands/overwritten_input.h"
@@ -35,13 +40,30 @@ void console_options(CLI::App* command, ConsoleSettings& console) {
     for (const char* name : {"--quiet", "--verbose", "--log-file"}) command->get_option(name)->group("What is said");
 }
 
+/// What was closed leads nowhere; else the first file that is opened would be written what is meant for a person.
+void open_standard_streams() {
+    for (int descriptor = 0; descriptor <= STDERR_FILENO; ++descriptor)
+        if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) ::open("/dev/null", O_RDWR);
+}
+
+/// "nan" is less than nothing and more than nothing: it passes every range.
+void refuse_no_numbers(CLI::App& command) {
+    const auto is_number = [](const std::string& text) {
+        double number = 0;
+        return CLI::detail::lexical_cast(text, number) && !std::isfinite(number) ? "not a number: " + text
+                                                                                 : std::string();
+    };
+    for (CLI::Option* option : command.get_options())
+        if (option->get_type_name().starts_with("FLOAT")) option->check(CLI::Validator(is_number, ""));
+}
+
 int run_command(const CLI::App& command, const Run& run, const ConsoleSettings& console, const std::string& line) {
-    const auto* json = command.get_option_no_throw("--json");
-    set_up_console(console, json && json->count() > 0);
-    if (const std::string problem = overwritten_input(command); !problem.empty()) {
-        fmt::print(stderr, "planlight: {}\n", problem);
+    if (const std::string problem = overwritten_input(command); !problem.empty()) {  // before the log is opened
+        print_to_user(fmt::format("planlight: {}\n", problem));
         return static_cast<int>(ExitCode::usage);
     }
+    const auto* json = command.get_option_no_throw("--json");
+    set_up_console(console, json && json->count() > 0);
     log_line(fmt::format("planlight {} ({})", PLANLIGHT_VERSION, line));
     if (const SiteSettings site = read_site_settings(); !site.read_from.empty())
         log_line("settings of this site: " + site.read_from.string());
@@ -51,6 +73,8 @@ int run_command(const CLI::App& command, const Run& run, const ConsoleSettings& 
 }  // namespace
 
 int main(int argc, char** argv) {
+    open_standard_streams();
+    std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is told as a full disk is
     keep_freed_memory();
     CLI::App app{"Planlight shows a surgical plan as light on the patient.\n", "planlight"};
     app.footer(std::string("planlight COMMAND --help shows a command's options and an example.\n") + kExitCodes);
@@ -62,6 +86,7 @@ int main(int argc, char** argv) {
     for (const auto add : kCommands) {
         Run run = add(app);
         CLI::App* command = app.get_subcommands({}).back();
+        refuse_no_numbers(*command);
         console_options(command, console);
         command->callback([&, command, run = std::move(run)] {
             chosen = [&, command, run] { return run_command(*command, run, console, line); };
@@ -71,7 +96,7 @@ int main(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-        fmt::print(stderr, "{}\n", usage_problem(app, error));
+        print_to_user(usage_problem(app, error) + "\n");
         return static_cast<int>(ExitCode::usage);
     }
     return run_and_explain(chosen);

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "planning_io/types/statistics.h"
 #include "projection/far_light.h"
@@ -50,16 +51,39 @@ double variance_of(const CameraLook& look, const CheckLightSettings& settings) {
     return std::pow(look.light->sigma_mm, 2) + std::pow(settings.place_sigma_mm, 2);
 }
 
-/// How far above the drawing's skin an item's light lies; 0 where that is not told, or not clearly from nothing.
-double depth_of(const std::vector<LookedAt*>& item, const CheckLightSettings& settings) {
+/// How far above the drawing's skin the light of some stretches lies; empty where that is not told.
+std::optional<LightDepth> depth_of(std::span<LookedAt* const> stretches, const CheckLightSettings& settings) {
     std::vector<SeenDepth> apart;
-    for (const LookedAt* s : item)
+    for (const LookedAt* s : stretches)
         if (s->looks[0].light && s->looks[1].light)
             apart.push_back({s->looks[0].light->off_mm - s->looks[1].light->off_mm, s->slopes[1] - s->slopes[0],
                              std::sqrt(variance_of(s->looks[0], settings) + variance_of(s->looks[1], settings))});
-    const auto depth = fit_depth(apart);
-    const double least_mm = depth ? std::max(settings.least_depth_mm, 3 * depth->sigma_mm) : 0;
-    return depth && std::abs(depth->mm) > least_mm ? depth->mm : 0;
+    return fit_depth(apart);
+}
+
+/// 0 where it is not clearly from nothing.
+double clear_depth(const LightDepth& depth, const CheckLightSettings& settings) {
+    return std::abs(depth.mm) > std::max(settings.least_depth_mm, 3 * depth.sigma_mm) ? depth.mm : 0;
+}
+
+/// Side by side on one stroke, of which every `step`-th stretch is looked at.
+bool next_to(const SeenSegment& a, const SeenSegment& b, std::size_t step, const CheckLightSettings& settings) {
+    constexpr double kTogether = 1.6, kSameWay = 0.7;
+    return !a.tick && !b.tick && a.item == b.item && a.sideways_in_ct.dot(b.sideways_in_ct) > kSameWay &&
+           (a.p_in_ct - b.p_in_ct).norm() < kTogether * settings.segment_mm * static_cast<double>(step);
+}
+
+/// Of one stretch: by itself and those beside it where they clearly tell another depth than all of the item does, for
+/// the skin may have risen under a part of it.
+double depth_at(std::size_t i, const std::vector<LookedAt*>& item, double of_item_mm, std::size_t step,
+                const CheckLightSettings& settings) {
+    std::vector<LookedAt*> together{item[i]};
+    if (i > 0 && next_to(item[i - 1]->segment, item[i]->segment, step, settings)) together.push_back(item[i - 1]);
+    if (i + 1 < item.size() && next_to(item[i + 1]->segment, item[i]->segment, step, settings))
+        together.push_back(item[i + 1]);
+    const auto depth = together.size() > 1 ? depth_of(together, settings) : std::nullopt;
+    if (!depth || clear_depth({depth->mm - of_item_mm, depth->sigma_mm}, settings) == 0) return of_item_mm;
+    return clear_depth(*depth, settings);
 }
 
 /// What both cameras say of a segment on skin that is `depth_mm` higher: the mean by weight where they agree; the
@@ -92,14 +116,17 @@ SeenSegment joined(const LookedAt& looked, double depth_mm, const CheckLightSett
     return result;
 }
 
-/// Item by item, for each has its own height of the skin.
-void join(std::vector<LookedAt>& looked, const CheckLightSettings& settings, LightCheck& check) {
+/// Item by item, for each has its own height of the skin, and so may parts of it.
+void join(std::vector<LookedAt>& looked, std::size_t step, const CheckLightSettings& settings, LightCheck& check) {
     std::vector<std::vector<LookedAt*>> of_item(check.items.size());
     for (LookedAt& one : looked) of_item[static_cast<std::size_t>(one.segment.item)].push_back(&one);
     for (std::size_t i = 0; i < of_item.size(); ++i) {
-        const double depth_mm = depth_of(of_item[i], settings);
+        const auto depth = depth_of(of_item[i], settings);
+        const double depth_mm = depth ? clear_depth(*depth, settings) : 0;
         if (depth_mm != 0) check.items[i].depth_mm = depth_mm;
-        for (const LookedAt* one : of_item[i]) check.segments.push_back(joined(*one, depth_mm, settings));
+        for (std::size_t k = 0; k < of_item[i].size(); ++k)
+            check.segments.push_back(
+                joined(*of_item[i][k], depth_at(k, of_item[i], depth_mm, step, settings), settings));
     }
 }
 
@@ -172,7 +199,17 @@ void sum_up(LightCheck& check) {
     check.told_whole = tells_whole(check.segments);
 }
 
-void sum_up_items(LightCheck& check) {
+/// Of an item's stretches that were seen, in their order.
+double part_off_mm(const std::vector<const SeenSegment*>& seen, std::size_t step, const CheckLightSettings& settings) {
+    double most_mm = 0;
+    for (std::size_t k = 1; k < seen.size(); ++k)
+        if (const SeenSegment& a = *seen[k - 1], &b = *seen[k];
+            a.off_mm * b.off_mm > 0 && next_to(a, b, step, settings))
+            most_mm = std::max(most_mm, std::min(std::abs(a.off_mm), std::abs(b.off_mm)));
+    return most_mm;
+}
+
+void sum_up_items(LightCheck& check, std::size_t step, const CheckLightSettings& settings) {
     for (std::size_t i = 0; i < check.items.size(); ++i) {
         std::vector<const SeenSegment*> seen;
         for (const SeenSegment& s : check.segments) {
@@ -182,6 +219,7 @@ void sum_up_items(LightCheck& check) {
         }
         check.items[i].seen = static_cast<int>(seen.size());
         if (!seen.empty()) find_shift(seen, check.items[i]);
+        check.items[i].part_off_mm = part_off_mm(seen, step, settings);
     }
 }
 
@@ -321,8 +359,8 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
         if (sight.seen[1]) looks[1] = find_light(segment, p.rig.right_camera, rig_from_ct, frame.right, p.settings);
         if (looks[0].asked || looks[1].asked) looked.push_back(looked_at(segment, looks, cameras_in_ct));
     }
-    join(looked, p.settings, check);
-    sum_up_items(check);
+    join(looked, step, p.settings, check);
+    sum_up_items(check, step, p.settings);
     sum_up(check);
     constexpr double kMostSeen = 0.8, kAside_mm = 1;  // else light is where it was looked for
     const bool missed = check.expected > 0 && (check.seen_share() < kMostSeen || check.off_mm > kAside_mm);

@@ -27,7 +27,7 @@ struct CheckLightSettings {
     double steepest = 1.2;            ///< radians between the skin's normal and projector or camera
     double steepest_lit = 1.31;       ///< up to which the projector lights it (`RenderSettings::steepest`)
     double place_sigma_mm = 0.1;      ///< of one segment beside its noise: texture, the skin's own shape
-    double least_depth_mm = 0.3;      ///< of an item's light above or below the drawing's skin, or three sigmas of it
+    double least_depth_mm = 0.3;      ///< of light above or below the drawing's skin, or three sigmas of it
     std::size_t most_segments = 120;  ///< looked at in one frame; of more they take turns
     bool far_too = true;              ///< light that is not where it belongs is looked for farther off (`far_mm`)
     int look_again_every = 8;         ///< frames: who sees which segment is asked anew in so many parts
@@ -41,7 +41,7 @@ struct SeenSegment {
     bool tick = false;       ///< an arm of a tick, which tells of the way along its line; counted only where it is seen
     bool seen = false;       ///< light was found; false: none within reach, though it should be seen
     double off_mm = 0;       ///< of the light along `sideways_in_ct`, on the skin as high as it is there
-    double by_depth_mm = 0;  ///< the part of it that is seen by its height alone (`ItemLight::depth_mm`)
+    double by_depth_mm = 0;  ///< the part of it that is seen by its height alone, its own or `ItemLight::depth_mm`
     double sigma_mm = 0;     ///< one standard deviation of that
     double background = 0;   ///< grey of the skin beside the stroke, mean of the cameras that looked
     double brighter = 0;     ///< the light than that skin, as a share of it; by the camera that sees more of it
@@ -57,7 +57,10 @@ struct ItemLight {
     Eigen::Vector3d shift_in_ct = Eigen::Vector3d::Zero();  ///< of the light along the skin, mm
     double off_mm = 0;                                      ///< its length, in the directions that the strokes tell
     double sigma_mm = 0;                                    ///< one standard deviation of it
-    bool one_direction_only = false;                        ///< a straight line tells nothing along itself
+    /// The farthest that two stretches side by side lie beside their place, both at least and to the same side: a part
+    /// of the item may lie elsewhere than the whole of it, where the skin has risen under that part.
+    double part_off_mm = 0;
+    bool one_direction_only = false;  ///< a straight line tells nothing along itself
     /// Of the light above the drawing's skin as both cameras see it, mm: the skin there has risen since the scan, or
     /// sunk. Empty where they do not tell it, or not clearly from nothing.
     std::optional<double> depth_mm;
@@ -95,10 +98,10 @@ struct LightCheck {
 ///
 /// Each stroke (labels are not asked) is predicted into the cameras; across it, in the tangent plane of the skin, the
 /// brightest ridge of the width of a stroke is looked for in the mean of some millimetres of stroke. Where the two
-/// cameras see an item's light apart, it lies on skin that is higher or lower than the drawing's, and so farther aside
-/// than either sees it. Stretches near another stroke are left out: their light could be that one's. Along a line the
-/// arms of its ticks tell. What all parties share cannot be seen: skin that slid over the bone, markers that moved on
-/// the head all together, an error common to CT and scan.
+/// cameras see an item's light apart, or that of a part of it, it lies on skin that is higher or lower than the
+/// drawing's, and so farther aside than either sees it. Stretches near another stroke are left out: their light could
+/// be that one's. Along a line the arms of its ticks tell. What all parties share cannot be seen: skin that slid over
+/// the bone, markers that moved on the head all together, an error common to CT and scan.
 ///
 /// With `only_item`, an index into `PlanDrawing::items`, that one alone is asked, though the light of all others is in
 /// the drawing (dim, say): what lies near their strokes is left out as ever.

@@ -33,6 +33,7 @@ void LightGate::forget() {
     last_.reset();
     items_.clear();
     told_whole_at_ = Instant::min();
+    lit_ = false;  // what is lit next begins then
 }
 
 void LightGate::skin_checked(double off_mm) {
@@ -52,9 +53,8 @@ void LightGate::restart() {
     forget();
 }
 
-void LightGate::other_light(Instant at) {
+void LightGate::other_light() {
     forget();
-    lit_since_ = at;
 }
 
 std::optional<LightGate::Ruling> LightGate::forbids() const {
@@ -72,12 +72,21 @@ LightGate::Item::Look LightGate::Item::all() const {
     return sum;
 }
 
+double LightGate::Item::part_off_mm() const {
+    double most = 0, second = 0;
+    for (const Look& look : looks) {
+        second = std::max(second, std::min(most, look.part_off_mm));
+        most = std::max(most, look.part_off_mm);
+    }
+    return second;
+}
+
 /// A look at which it was not an item's turn tells nothing of it; one that saw little of it, nothing of its place.
 void LightGate::take(Instant at, const ItemLight& seen, Item& item) const {
     item.name = seen.name;
     if (seen.lit) item.lit_at = at;
     std::erase_if(item.looks, [&](const Item::Look& look) { return !within_fresh(look.at, at); });
-    item.looks.push_back({at, seen.lit_segments, seen.segments, seen.seen});
+    item.looks.push_back({at, seen.lit_segments, seen.segments, seen.seen, seen.part_off_mm});
     if (seen.segments == 0) return;
     if (seen.seen >= settings_.least_seen_of_item * seen.segments) {
         item.off_mm = seen.off_mm;
@@ -152,6 +161,12 @@ bool LightGate::rule_on_item(const Item& item, Ruling& ruling) const {
         ruling.headline = fmt::format("LOOK: \"{}\" lies {} mm beside its place.", item.name, said(item.off_mm));
         ruling.details = {"Look at it on the skin; if it stays so, scan again."};
         if (item.depth_mm) ruling.details.insert(ruling.details.begin(), sentence_of_height(*item.depth_mm));
+        return true;
+    }
+    if (const double part_mm = item.part_off_mm(); part_mm > settings_.warn_mm) {
+        ruling.of_other = true;
+        ruling.headline = fmt::format("LOOK: a part of \"{}\" lies {} mm beside its place.", item.name, said(part_mm));
+        ruling.details = {"Look at it on the skin; if it stays so, scan again."};
         return true;
     }
     if (all.asked < settings_.least_asked_of_item * all.lit) {
@@ -290,9 +305,9 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     ruling.details = {fmt::format("Measured by the cameras: 95 % of the light within {} mm of the plan.",
                                   said(std::max(0.1, last_->off_mm)))};
     constexpr double kMostOfIt = 0.75;
-    if (last_->expected < kMostOfIt * last_->lit)
-        ruling.details.push_back(fmt::format("They can see about {:.0f} % of the light.",
-                                             10 * std::round(10. * last_->expected / last_->lit)));
+    if (last_->seen < kMostOfIt * last_->lit)
+        ruling.details.push_back(
+            fmt::format("They see about {:.0f} % of the light.", 10 * std::round(10. * last_->seen / last_->lit)));
     return ruling;
 }
 

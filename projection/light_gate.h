@@ -69,8 +69,9 @@ public:
     void new_match();  ///< or one that was found to hold still: nothing is verified or measured any more
     /// Light is asked for again; after a stop it must be verified anew, for what a person saw then was no longer true.
     void restart();
-    /// From now on something else is lit, a landmark in place of the plan say: what was measured was of other light.
-    void other_light(Instant at);
+    /// From now on something else is lit, a landmark in place of the plan say, or the plan again after stripes: what
+    /// was measured was of other light.
+    void other_light();
 
     /// To be asked before anything is lit: why there must be no light, as `step` would rule; empty: there may be.
     std::optional<Ruling> forbids() const;
@@ -81,6 +82,7 @@ private:
         struct Look {
             Instant at{};
             int lit = 0, asked = 0, seen = 0;  ///< stretches
+            double part_off_mm = 0;            ///< `ItemLight::part_off_mm`
         };
         std::string name;
         Instant lit_at = Instant::min();
@@ -88,7 +90,8 @@ private:
         int good = 0;       ///< looks in a row that found it in its place
         double off_mm = 0;  ///< by the last look that saw enough of it
         std::optional<double> depth_mm;
-        Look all() const;  ///< of all looks together
+        Look all() const;            ///< of all looks together
+        double part_off_mm() const;  ///< as two looks found it at least
     };
     void take(Instant at, const LightCheck& check);
     bool faint(Instant at) const;

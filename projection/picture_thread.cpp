@@ -14,6 +14,7 @@ namespace planlight {
 namespace {
 
 constexpr auto kPatience = std::chrono::seconds(1);
+constexpr auto kHangs = std::chrono::milliseconds(500);
 constexpr auto kExpiryPoll = std::chrono::milliseconds(3);  ///< the injected clock can only be asked, not waited for
 
 const char* const kVertexShader =
@@ -157,9 +158,20 @@ void PictureThread::go_dark() noexcept {
     if (!drawn_within_a_second(lock, number) && failure_.empty()) failure_ = "black was not drawn within a second";
 }
 
-void PictureThread::check() const {
+void PictureThread::check() {
     const std::lock_guard lock(mutex_);
     if (!failure_.empty()) throw failed(failure_);
+    const bool behind = wanted_ != drawn_ || (lit_ && clock_.now() >= valid_until_);
+    if (!behind || (behind_since_ && behind_at_ != drawn_)) behind_since_.reset();
+    if (!behind) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (!behind_since_) {
+        behind_since_ = now;
+        behind_at_ = drawn_;
+    }
+    if (now - *behind_since_ < kHangs) return;
+    failure_ = "the graphics driver does not answer any more";
+    throw failed(failure_);
 }
 
 void PictureThread::redraw() {

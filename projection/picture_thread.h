@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
@@ -28,9 +29,11 @@ public:
     void show(const RgbImage& picture, Instant valid_until);
     /// Returns when black has been handed to the display, after a second at most; `check` says whether it has been.
     void go_dark() noexcept;
-    /// Throws DeviceError when the thread could not draw what it should and has ended, or black was not drawn in time:
-    /// what the display shows is not known then.
-    void check() const;
+    /// Throws DeviceError when the thread could not draw what it should and has ended, black was not drawn in time, or
+    /// nothing was drawn for half a second though something should be, an expired picture's black say: what the display
+    /// shows is not known then. To be called again and again. A thread that hangs in the graphics driver cannot be
+    /// waited for: the destructor would not return.
+    void check();
     /// Draws again what should be seen (the window system lost it).
     void redraw();
     bool dark() const;
@@ -52,6 +55,9 @@ private:
     Instant valid_until_{};
     bool lit_ = false, stop_ = false;
     std::uint64_t wanted_ = 0, drawn_ = 0;  ///< counts of requests
+    /// Since when `check` has seen that something is to be drawn, and how much had been drawn then.
+    std::optional<std::chrono::steady_clock::time_point> behind_since_;
+    std::uint64_t behind_at_ = 0;
     std::string failure_;
     std::thread thread_;
 };

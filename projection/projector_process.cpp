@@ -9,7 +9,10 @@
 
 #include <array>
 #include <cstring>
+#include <mutex>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "planning_io/types/error.h"
 
@@ -19,6 +22,34 @@ namespace planlight {
 namespace {
 
 constexpr auto kPoll = std::chrono::milliseconds(1);
+
+/// Processes that were killed and have not gone: they hang in the graphics driver, and their windows may stay lit. Of
+/// all `ProjectorProcess` of the program.
+class Unended {
+public:
+    static Unended& all() {
+        static Unended unended;
+        return unended;
+    }
+    void add(pid_t process) {
+        const std::lock_guard lock(mutex_);
+        processes_.push_back(process);
+    }
+    bool any() {
+        const std::lock_guard lock(mutex_);
+        std::erase_if(processes_, [](pid_t process) { return waitpid(process, nullptr, WNOHANG) != 0; });
+        return !processes_.empty();
+    }
+
+private:
+    std::mutex mutex_;
+    std::vector<pid_t> processes_;
+};
+
+DeviceError cannot_be_ended() {
+    return {"Projector process", "it cannot be ended, and its light may still be on",
+            "Switch the projector off by hand. It hangs in the graphics driver: restart the computer."};
+}
 
 /// Starts `PROGRAM projector-window --monitor M` with the two descriptors and nothing else of ours open, in a process
 /// group of its own: Ctrl-Z in the terminal must not stop both sides at once, for nobody would be left to make it dark.
@@ -52,6 +83,7 @@ pid_t spawn(const std::filesystem::path& program, const std::string& monitor, in
 
 ProjectorProcess::ProjectorProcess(const std::string& monitor, const ProjectorProcessSettings& settings)
     : settings_(settings), monitor_(monitor) {
+    if (Unended::all().any()) throw cannot_be_ended();
     start(monitor);
     try {
         wait_until_ready();
@@ -101,21 +133,25 @@ void ProjectorProcess::wait_until_ready() {
 }
 
 void ProjectorProcess::fail(const std::string& problem, const std::string& remedy) {
-    end();
+    if (!end()) throw cannot_be_ended();
     // The process names its device itself.
     const std::size_t colon = problem.find(": ");
     if (colon == std::string::npos) throw DeviceError("Projector", problem, remedy);
     throw DeviceError(problem.substr(0, colon), problem.substr(colon + 2), remedy);
 }
 
-void ProjectorProcess::end() noexcept {
+bool ProjectorProcess::end() noexcept {
+    constexpr Instant kPatience = std::chrono::milliseconds(300);
     if (bell_ >= 0) close(bell_);
     bell_ = -1;
-    if (process_ < 0) return;
+    if (process_ < 0) return true;
     // Killed, not asked: the window goes with the process, also when that was stopped.
-    kill(process_, SIGKILL);
-    waitpid(process_, nullptr, 0);
-    process_ = -1;
+    const pid_t process = std::exchange(process_, -1);
+    kill(process, SIGKILL);
+    for (const Instant until = clock_.now() + kPatience; clock_.now() < until; std::this_thread::sleep_for(kPoll))
+        if (waitpid(process, nullptr, WNOHANG) != 0) return true;
+    Unended::all().add(process);
+    return false;
 }
 
 void ProjectorProcess::wake() {
@@ -145,7 +181,7 @@ void ProjectorProcess::check_locked() {
     const Instant busy_since = mailbox_.busy_since();
     if (clock_.now() - mailbox_.alive_at() > settings_.silence_allowed ||
         (busy_since.count() > 0 && clock_.now() - busy_since > settings_.work_allowed)) {
-        end();
+        if (!end()) throw cannot_be_ended();
         throw DeviceError("Projector process", "it does not answer any more", kRemedy);
     }
 }

@@ -31,7 +31,8 @@ struct ProjectorProcessSettings {
 class ProjectorProcess final : public Projector {
 public:
     /// Starts it on that monitor (a name, or its number as text) and waits until its window is black there. Throws
-    /// DeviceError as `ProjectorWindow` does, or when another Planlight lights that monitor.
+    /// DeviceError as `ProjectorWindow` does, when another Planlight lights that monitor, or when one that was killed
+    /// before has still not gone.
     explicit ProjectorProcess(const std::string& monitor, const ProjectorProcessSettings& settings = {});
     ~ProjectorProcess() override;
     ProjectorProcess(const ProjectorProcess&) = delete;
@@ -50,7 +51,8 @@ public:
     /// Keeps the light for another lease. To be called while everything that the light depends on is alive.
     void renew();
 
-    /// Looks whether the process still answers; throws DeviceError, with it ended and so dark, when it does not. To be
+    /// Looks whether the process still answers; throws DeviceError, with it ended and so dark, when it does not (or, as
+    /// it says then, killed and not gone, for it hangs in the graphics driver: its light may still be on). To be
     /// called at least ten times a second: a projector process that was stopped keeps its last picture until this ends
     /// it.
     void check();
@@ -64,7 +66,7 @@ private:
     void check_locked();
     bool shown_in_time(std::uint64_t number);
     void wake();
-    void end() noexcept;
+    bool end() noexcept;  ///< false: killed, and not gone yet; its window may stay
 
     ProjectorProcessSettings settings_;
     SteadyClock clock_;

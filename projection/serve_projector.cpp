@@ -3,7 +3,9 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <thread>
 
 #include "planning_io/types/error.h"
@@ -55,6 +57,19 @@ private:
     std::jthread thread_;
 };
 
+/// The process, and its window with it, outlives the program by a moment only, whatever it waits for in the graphics
+/// driver.
+void end_with_program(int bell) {
+    std::thread([bell] {
+        constexpr auto kToGoDark = std::chrono::milliseconds(300);
+        pollfd program{bell, 0, 0};  // asked for nothing but its end
+        while (poll(&program, 1, -1) < 0 && errno == EINTR) {
+        }
+        std::this_thread::sleep_for(kToGoDark);
+        std::_Exit(static_cast<int>(ExitCode::device));
+    }).detach();
+}
+
 void follow(ProjectorWindow& window, LightMailbox& mailbox, int bell) {
     const SteadyClock clock;
     const Pulse pulse(mailbox);
@@ -72,6 +87,19 @@ void follow(ProjectorWindow& window, LightMailbox& mailbox, int bell) {
     } while (wait_for_bell(bell));
 }
 
+/// A fault ends the process at once: a window that is taken down in order would wait for a driver that hangs, lit.
+void follow_or_end(ProjectorWindow& window, LightMailbox& mailbox, int bell) {
+    try {
+        follow(window, mailbox, bell);
+        return;
+    } catch (const Error& error) {
+        mailbox.say_failed(error.what(), error.remedy);
+    } catch (const std::exception& error) {
+        mailbox.say_failed(std::string("projector process: ") + error.what(), "Report this.");
+    }
+    std::_Exit(static_cast<int>(ExitCode::device));
+}
+
 }  // namespace
 
 int serve_projector(const std::string& monitor, int bell, int descriptor) {
@@ -79,10 +107,11 @@ int serve_projector(const std::string& monitor, int bell, int descriptor) {
     for (const int signal : {SIGINT, SIGHUP, SIGTSTP, SIGTTOU, SIGTTIN}) std::signal(signal, SIG_IGN);
     setpriority(PRIO_PROCESS, 0, -10);  // where the system allows it
     LightMailbox mailbox(descriptor);
+    end_with_program(bell);
     try {
         const LeasedClock clock(mailbox);
         ProjectorWindow window(monitor, clock);
-        follow(window, mailbox, bell);
+        follow_or_end(window, mailbox, bell);
         return 0;
     } catch (const Error& error) {
         mailbox.say_failed(error.what(), error.remedy);

@@ -5,6 +5,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/console.h"
 #include "app/json_text.h"
 #include "planning_io/case/room_file.h"
 #include "planning_io/types/error.h"
@@ -80,11 +81,10 @@ int run_devices(const DevicesOptions& options) {
     }
     if (options.out.empty()) return 0;
     write_room(first_room(cameras, monitors), options.out);
-    fmt::print(
-        stderr,
+    print_to_user(fmt::format(
         "{}: the first two cameras and a monitor. Exchange \"left\" and \"right\" if they stand the other way, and "
         "calibrate the rig; set \"together\" when one triggers the other.\n",
-        options.out.string());
+        options.out.string()));
     return 0;
 }
 

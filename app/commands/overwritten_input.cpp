@@ -20,10 +20,14 @@ struct Named {
 
 /// `--surface` is written by `scan` and read by `prepare`.
 bool is_written(const CLI::App& command, const std::string& option) {
-    static constexpr std::array kWritten{"--out",        "--raw",     "--certificate", "--slicer",
-                                         "--screenshot", "--picture", "--pdf",         "--dicom"};
+    static constexpr std::array kWritten{"--out",     "--raw", "--certificate", "--slicer",  "--screenshot",
+                                         "--picture", "--pdf", "--dicom",       "--log-file"};
     return std::find(kWritten.begin(), kWritten.end(), option) != kWritten.end() ||
            (option == "--surface" && command.get_name() == "scan");
+}
+
+const char* what_becomes_of(const std::string& option) {
+    return option == "--log-file" ? "spoilt by lines of a log" : "written over";
 }
 
 /// Not a number, nor a word of a few that it may be: "modern" of --preset is no folder of that name.
@@ -63,7 +67,6 @@ std::string overwritten_input(const CLI::App& command) {
         if (option->get_expected_max() == 0 || !may_be_path(*option)) continue;
         const bool named = !option->get_lnames().empty();
         const std::string name = named ? "--" + option->get_lnames().front() : option->get_name();
-        if (name == "--log-file") continue;
         for (const std::string& text : option->results())
             if (!text.empty()) (named && is_written(command, name) ? written : read).push_back({name, text});
     }
@@ -73,12 +76,11 @@ std::string overwritten_input(const CLI::App& command) {
             std::error_code error;
             if (!fs::exists(other.path, error)) continue;
             if (same(path, other.path))
-                return fmt::format("{} names {}, which is read ({}): it would be written over. Give it another name.",
-                                   option, path.string(), other.option);
+                return fmt::format("{} names {}, which is read ({}): it would be {}. Give it another name.", option,
+                                   path.string(), other.option, what_becomes_of(option));
             if (is_own_file_of(path, other.path))
-                return fmt::format(
-                    "{} names {}, a file that {} ({}) is made of: it would be written over. Give it another name.",
-                    option, path.string(), other.path.string(), other.option);
+                return fmt::format("{} names {}, a file that {} ({}) is made of: it would be {}. Give it another name.",
+                                   option, path.string(), other.path.string(), other.option, what_becomes_of(option));
         }
         for (std::size_t k = 0; k < i; ++k)
             if (same(path, written[k].path))

@@ -165,8 +165,10 @@ Run add_project(CLI::App& app) {
     sub->add_option("case", o.case_folder, "Case folder")->required();
     sub->add_option("--rig", o.rig, "rig.json")->required();
     sub->add_option("--registration", o.registration, "registration.json")->required();
-    sub->add_option("--poses", o.poses, "poses.json (default: the patient has not moved since the scan)");
-    sub->add_option("--frame", o.frame, "Which pose, from 0 (default: the last)")->check(CLI::Range(0, 1000000000));
+    auto* poses = sub->add_option("--poses", o.poses, "poses.json (default: the patient has not moved since the scan)");
+    sub->add_option("--frame", o.frame, "Which pose, from 0 (default: the last)")
+        ->check(CLI::Range(0, 1000000000))
+        ->needs(poses);
     sub->add_flag(
         "--confirmed", o.confirmed,
         "The overlay was looked at on landmarks (for the verdict `ask`, and for files that do not say of which "

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -26,6 +27,7 @@
 #include "planning_io/plan/point_pairs_file.h"
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/statistics.h"
 #include "registration/matching/cloud_normals.h"
 #include "registration/matching/cloud_region.h"
 #include "registration/matching/register_with_landmarks.h"
@@ -68,6 +70,7 @@ PointCloud cloud_of(const RegisterOptions& options, std::optional<RigState>& rig
     say_left_out(left_out, options.cloud);
     check_unit(cloud, options.unit, options.cloud);
     rig = rig_state_in(comments, options.cloud);
+    check_points(cloud, rig, options.cloud);
     if (!cloud.normals_in_rig.empty()) return cloud;
     if (options.viewpoint_in_rig.empty())
         throw InputError(
@@ -87,12 +90,32 @@ PointCloud in_region(const PointCloud& cloud, const RegisterOptions& options, co
     if (!rig && options.rig.empty())
         throw Error(ExitCode::usage, "--region is given, and the cloud does not say which rig saw it",
                     "Name the rig of the scan with --rig rig.json.");
-    const CameraModel camera = options.rig.empty() ? rig->rig.left_camera : read_rig(options.rig).left_camera;
+    if (rig && !options.rig.empty() && rig->calibrated.known() &&
+        rig->calibrated.hash != name_of(read_rig(options.rig)).hash)
+        throw InputError(options.rig, "is another rig than the one that the cloud was made with",
+                         "Leave --rig out: the cloud says where its cameras stood.");
+    const CameraModel camera = rig && rig->rig.whole() ? rig->rig.left_camera : read_rig(options.rig).left_camera;
     PointCloud part = within_outline(cloud, camera, std::move(outline));
     if (part.empty())
         throw InputError(options.cloud, "has no point within the region",
                          "Give pixels of the left camera, as in the pictures of the capture, and the rig of the scan.");
     return part;
+}
+
+/// Landmarks are pointed at on the skin. Of those in another frame (a half turn lies between LPS and RAS) the rms says
+/// nothing.
+void check_near_skin(const std::vector<PointPair>& pairs, const TriangleMesh& skin, const Path& file) {
+    constexpr double kFar_mm = 60;
+    std::vector<double> off_mm;
+    for (const PointPair& pair : pairs) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const auto& vertex : skin.vertices_in_ct) nearest = std::min(nearest, (vertex - pair.in_ct).squaredNorm());
+        off_mm.push_back(std::sqrt(nearest));
+    }
+    if (off_mm.empty() || median(off_mm) <= kFar_mm) return;
+    throw InputError(
+        file, fmt::format("has landmarks that lie {:.0f} mm off the skin of the case (median)", median(off_mm)),
+        "Give ct_x, ct_y, ct_z in the frame of the CT, mm, and say in its first line whether that is LPS or RAS.");
 }
 
 RegistrationResult match(const RegisterOptions& options, const Case& the_case, std::shared_ptr<const PointCloud>& cloud,
@@ -101,6 +124,7 @@ RegistrationResult match(const RegisterOptions& options, const Case& the_case, s
         throw Error(ExitCode::usage, "neither --cloud nor --pairs is given", "Give the scan, landmarks, or both.");
     const std::vector<PointPair> pairs =
         options.pairs.empty() ? std::vector<PointPair>{} : read_point_pairs(options.pairs);
+    check_near_skin(pairs, the_case.skin, options.pairs);
     if (options.cloud.empty()) return register_point_pairs(pairs);
     RegistrationSettings settings;
     settings.initial.seed = options.seed;
@@ -236,13 +260,12 @@ int run_register(const RegisterOptions& options) {
         throw CheckFailedError(
             fmt::format("{}: {}", bad_rig ? "the match may not be used" : "the patient was not found",
                         fmt::join(result.reasons, "; ")),
-            bad_rig ? result.rig->remedy
-                    : std::string("Take cloth and hands away from the head, scan again from a side that shows more of "
-                                  "it, and check "
-                                  "that this is the patient of the case.") +
-                          (cloud ? hint_of_unit(*cloud, options.unit) : std::string()) +
-                          (keeps ? fmt::format(" {} is as it was before, and not of this scan.", options.out.string())
-                                 : std::string()));
+            (bad_rig ? result.rig->remedy
+                     : std::string("Take cloth and hands away from the head, scan again from a side that shows more of "
+                                   "it, and check that this is the patient of the case.") +
+                           (cloud ? hint_of_unit(*cloud, options.unit) : std::string())) +
+                (keeps ? fmt::format(" {} is as it was before, and not of this scan.", options.out.string())
+                       : std::string()));
     return 0;
 }
 

@@ -39,7 +39,7 @@ std::optional<ResumeOffer> resume_of(const SessionOptions& options, const Case& 
     try {
         return resume_offer(std::move(session->last), session->recording, the_case, rig);
     } catch (const Error& why_not) {
-        fmt::print(stderr, "The last session cannot be gone on with: {}.\n", why_not.what());
+        print_to_user(fmt::format("The last session cannot be gone on with: {}.\n", why_not.what()));
         return std::nullopt;
     }
 }
@@ -52,11 +52,10 @@ std::unique_ptr<SessionLink> link_of(const SessionOptions& options, const Case& 
     settings.server.address = options.igtl_address;
     settings.names = site.openigtlink_names;
     auto link = std::make_unique<SessionLink>(the_case, settings);
-    fmt::print(
-        stderr,
+    print_to_user(fmt::format(
         "Whoever connects to port {} of {} (OpenIGTLink) is told poses and what the gate says, and is given skin "
         "and plan, {}; the skin is the patient's face, and nothing is encrypted.\n",
-        link->port(), options.igtl_address, settings.names ? "with their names" : "without names");
+        link->port(), options.igtl_address, settings.names ? "with their names" : "without names"));
     return link;
 }
 

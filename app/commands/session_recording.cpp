@@ -120,10 +120,10 @@ void RecordedSession::report(const Meanwhile<ReportBeside>& meanwhile, const Clo
         };
         const auto write = [&] { return write_report_beside(file_, go_on); };
         const ReportBeside report = meanwhile ? meanwhile(write) : write();
-        fmt::print(
-            stderr, "{}\nThe report of this session: {} and {}. {}, as the recording does.\n", report.verdict,
+        print_to_user(fmt::format(
+            "{}\nThe report of this session: {} and {}. {}, as the recording does.\n", report.verdict,
             report.page.string(), report.pdf.string(),
-            anonymous_ ? "It names nobody, and shows what lies round the plan alone" : "It shows the patient's face");
+            anonymous_ ? "It names nobody, and shows what lies round the plan alone" : "It shows the patient's face"));
     } catch (const std::exception& fault) {
         warn(
             fmt::format("The report of this session could not be written: {}. The recording is there; write it with "
@@ -144,7 +144,7 @@ RecordedSession recording_of_session(const SessionOptions& options, const Case& 
                                      const DrawingSettings& drawing) {
     const RecordMode mode = record_mode_of(options.record);
     if (mode == RecordMode::none) {
-        fmt::print(stderr, "This session is not recorded, and there will be no report of it.\n");
+        print_to_user(fmt::format("This session is not recorded, and there will be no report of it.\n"));
         return {};
     }
     if (options.anonymous && mode == RecordMode::all)
@@ -157,11 +157,11 @@ RecordedSession recording_of_session(const SessionOptions& options, const Case& 
     const std::string free =
         free_gb < 10 ? fmt::format("{:.0f} MB", 1000 * free_gb) : fmt::format("{:.0f} GB", free_gb);
     if (options.anonymous) {
-        fmt::print(stderr,
-                   "Recorded in {}: what happens and some of the frames, without names, and blurred but for the plan's "
-                   "surroundings, at most 1 GB an hour; {} are free. Only {} can read it; no later session can go on "
-                   "with its match. Matches with the scan of the face are still kept in {}.\n",
-                   file.string(), free, operator_name(), matches_folder(options).string());
+        print_to_user(fmt::format(
+            "Recorded in {}: what happens and some of the frames, without names, and blurred but for the plan's "
+            "surroundings, at most 1 GB an hour; {} are free. Only {} can read it; no later session can go on "
+            "with its match. Matches with the scan of the face are still kept in {}.\n",
+            file.string(), free, operator_name(), matches_folder(options).string()));
         const NamesLeftOut names = names_left_out(options, the_case, head);
         RecordingHead nameless = without_names(head);
         nameless.settings = names.out_of(head.settings);
@@ -169,11 +169,11 @@ RecordedSession recording_of_session(const SessionOptions& options, const Case& 
                                                   FrameChoiceSettings{}, names),
                 file, !options.no_report, true};
     }
-    fmt::print(stderr, "Recorded in {}: {}; {} are free. It shows the patient's face, and only {} can read it.\n",
-               file.string(),
-               mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
-                                          : "every frame, about 23 GB an hour in the paper's room",
-               free, operator_name());
+    print_to_user(fmt::format(
+        "Recorded in {}: {}; {} are free. It shows the patient's face, and only {} can read it.\n", file.string(),
+        mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
+                                   : "every frame, about 23 GB an hour in the paper's room",
+        free, operator_name()));
     return {std::make_unique<SessionRecorder>(std::move(sink), head), file, !options.no_report, false};
 }
 

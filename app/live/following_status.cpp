@@ -64,7 +64,8 @@ Status status_of(const Session& session, const Session::Update& update, const Li
 
 std::optional<double> item_off_mm(const LightCheck& light, std::size_t i) {
     const ItemLight& item = light.items.at(i);
-    return item.told() ? std::optional(std::max(item.off_mm, light.far_mm.value_or(0))) : std::nullopt;
+    return item.told() ? std::optional(std::max({item.off_mm, item.part_off_mm, light.far_mm.value_or(0)}))
+                       : std::nullopt;
 }
 
 }  // namespace planlight

@@ -38,10 +38,10 @@ int identify_monitors(const ProjectorOptions& options) {
     std::cout.flush();
     std::fflush(stdout);
     if (options.seconds <= 0) return 0;
-    fmt::print(stderr,
-               "Every monitor shows its name for {:g} s, then goes dark. Nobody may lie under the projector. Ctrl-C "
-               "ends it.\n",
-               options.seconds);
+    print_to_user(fmt::format(
+        "Every monitor shows its name for {:g} s, then goes dark. Nobody may lie under the projector. Ctrl-C "
+        "ends it.\n",
+        options.seconds));
     note_end_signals();
     const SteadyClock clock;
     for (const std::string& why : show_monitor_cards(clock, options.seconds, [] { return asked_to_end(); })) warn(why);

@@ -97,6 +97,7 @@ private:
     void refused(const Press& press, Session& session, const Error& refusal);
     void act(const Press& press, Session& session, Room& room);
     void begin_anew(Session& session, Room& room);
+    bool scan_holds();
     void begin_to_follow(Session& session, Room& room);
     void answer_dark(const Press& press, Session& session);
     void scan(Session& session);
@@ -108,6 +109,7 @@ private:
     ResumeCheck look_whether_it_holds(Session& session, const KeptMatch& match);
     void look_again(Session& session);
     void check_skin(Session& session);
+    void give_up_scan();
     bool looked_at(Instant now) const;
     void show_measured(const Session::Update& update, OperatorModel& m) const;
     void show_verification(const Session::Update& update, LightGate::Ruling& ruling);

@@ -175,8 +175,8 @@ bool LiveSession::still_wanted(const Press& press) const {
             return state_ == SessionState::matching;
         case OperatorAction::check_skin:
             return state_ == SessionState::checking_skin;
-        case OperatorAction::track:
-            return state_ == SessionState::following;
+        case OperatorAction::track:  // and the skin is to be checked right after
+            return state_ == SessionState::following || state_ == SessionState::checking_skin;
         case OperatorAction::confirm:
             return state_ == SessionState::found || state_ == SessionState::verifying ||
                    state_ == SessionState::looking_again;
@@ -210,7 +210,7 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
             return;
         case OperatorAction::do_register:
         case OperatorAction::use_landmarks:
-            find_patient(session, newest_landmarks());
+            if (scan_holds()) find_patient(session, newest_landmarks());
             return;
         case OperatorAction::check_skin:
             room.let_patient_move(false);  // was asked to lie still
@@ -240,6 +240,21 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
             break;
     }
     if (following_) follow(session, room);
+}
+
+/// False, and said, where a check of the skin ended after Register was pressed, and found that the scan is true no
+/// more.
+bool LiveSession::scan_holds() {
+    {
+        const std::lock_guard lock(mutex_);
+        if (scan_there_) return true;
+    }
+    happened(SessionHappening::match_refused, [](OperatorModel& m) {
+        m.status = {StatusKind::refused,
+                    "The skin does not lie where the markers put it.",
+                    {"The markers have moved on the patient, or the patient under them: fix them, and scan again."}};
+    });
+    return false;
 }
 
 void LiveSession::begin_anew(Session& session, Room& room) {

@@ -212,6 +212,14 @@ void LiveSession::show_verification(const Session::Update& update, LightGate::Ru
             " If it lies elsewhere on the patient, press Stop, and scan again.");
 }
 
+/// A match on a scan from before the markers moved on the patient would lie as far off as the one there is, and be new.
+void LiveSession::give_up_scan() {
+    change_model([&](OperatorModel& m) {
+        scan_there_ = false;
+        m.do_register = {false, "scan first"};
+    });
+}
+
 /// The short scan, and what it means for the light.
 void LiveSession::check_skin(Session& session) {
     landmark_lit_from_.reset();  // stripes take its place
@@ -219,6 +227,7 @@ void LiveSession::check_skin(Session& session) {
         if (!light_permitted()) throw CheckFailedError("The check was ended by DARK", "Press Track to go on.");
         set_progress(view_of(SessionState::checking_skin).headline, static_cast<double>(done) / std::max(1, of));
     });
+    gate_.other_light(seen_at_);  // the plan's is lit anew
     std::string words = "The skin was not checked: " + check.why_not + "; check it again.";
     if (check.elsewhere) {
         gate_.skin_checked(std::numeric_limits<double>::infinity());
@@ -228,6 +237,7 @@ void LiveSession::check_skin(Session& session) {
         words = fmt::format("Skin checked: the plan's points lie within {:.1f} mm of where the markers put them.",
                             check.off_mm);
     }
+    if (check.elsewhere || (check.known && check.off_mm > LightGateSettings{}.warn_mm)) give_up_scan();
     happened(SessionHappening::skin_checked);
     change_model([&](OperatorModel& m) { m.evidence.insert(m.evidence.begin(), words); });
 }

@@ -222,7 +222,7 @@ int told_at_the_end(int code, const LiveSession& session, const WindowMeter& met
         std::cout << json.substr(0, json.find_last_not_of('\n') + 1) << ",\n  \"window\": " << meter.json() << "\n}\n"
                   << std::flush;
     } else if (latency.lit > 0) {
-        fmt::print("{}.\n", latency.sentence());
+        std::cout << latency.sentence() << ".\n";
     }
     if (const std::string not_kept = session.not_kept().with_its_folder; !not_kept.empty()) warn(not_kept);
     for (const std::string& sentence : {latency.sentence(), meter.sentence()})

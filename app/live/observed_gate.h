@@ -33,7 +33,7 @@ public:
         tell(GateCall::restart);
     }
     void other_light(Instant at) {
-        gate_.other_light(at);
+        gate_.other_light();
         tell(GateCall::other_light, at);
     }
     /// Told only where it does.

@@ -54,7 +54,7 @@ void ProjectorKeeper::go_dark() noexcept {
 
 void ProjectorKeeper::disturb(int signal) noexcept {
     const std::lock_guard lock(mutex_);
-    if (projector_) kill(projector_->process(), signal);
+    if (projector_ && projector_->process() > 0) kill(projector_->process(), signal);  // -1 is every process there is
 }
 
 void ProjectorKeeper::window_lives() {

@@ -242,7 +242,7 @@ private:
                 gate_.restart();
                 return;
             case GateCall::other_light:
-                gate_.other_light(at);
+                gate_.other_light();
                 return;
             case GateCall::forbids: {
                 const auto forbidden = gate_.forbids();

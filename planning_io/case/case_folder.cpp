@@ -286,6 +286,8 @@ Case read_case(const fs::path& folder) {
     files.verify_others({kManifest, kSkinMesh, kLutFile, kPlanFile});
     prepared.plan = read_plan(files.path(kPlanFile));
     prepared.plan.risk_structures = read_risk_structures(manifest, files);
+    if (!prepared.plan_hash.empty() && hash_of(prepared.plan) != prepared.plan_hash)
+        throw InputError(files.path(kPlanFile), "is the plan of another case", kPrepare);
     return prepared;
 }
 

@@ -125,6 +125,9 @@ void Parcel::write_all(const void* from, std::size_t bytes) {
     while (bytes > 0) {
         const ssize_t moved = write(fd_, at, bytes);
         if (moved < 0 && errno == EINTR) continue;
+        if (moved < 0 && errno == EFBIG)
+            throw DiskError("the limit on the size of files (ulimit -f)", "is too small for what is read",
+                            "Raise it, and try again.");
         if (moved <= 0) throw std::bad_alloc();  // an unnamed file in memory
         at += moved, bytes -= static_cast<std::size_t>(moved);
     }

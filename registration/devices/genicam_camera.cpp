@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <mutex>
 #include <utility>
 
 #include "planning_io/types/error.h"
@@ -49,6 +50,9 @@ struct GenicamCamera::Device {
 };
 
 std::vector<FoundCamera> list_genicam_cameras() {
+    // Aravis gives away its own texts, and frees them when another thread has the list made anew.
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
     arv_update_device_list();
     std::vector<FoundCamera> found;
     for (unsigned i = 0; i < arv_get_n_devices(); ++i)
@@ -236,6 +240,7 @@ bool GenicamCamera::receive() {
         frames_.fail({fmt::format("it sends pictures of format {:#x}, which are not grey ones",
                                   arv_buffer_get_image_pixel_format(buffer)),
                       "Set \"pixel_format\" to Mono8, Mono10, Mono12 or Mono16."});
+        learning_ = true;  // until the next picture that is one
         heard_at_ = arrived;
         return true;
     }
@@ -278,10 +283,11 @@ bool GenicamCamera::clock_is_known(Instant by_device, Instant arrived) {
     return true;
 }
 
-/// Whether exposure and gain are still what they were at the start; asked now and then.
+/// Whether exposure and gain are still what they were at the start; asked now and then. A camera from which nothing
+/// comes is not asked: it would be waited for, for seconds, before its silence is told.
 bool GenicamCamera::still_as_set() {
     const Instant now = clock_.now();
-    if (now - looked_at_ < settings_.look_every) return true;
+    if (now - looked_at_ < settings_.look_every || now - heard_at_ > kPatience) return true;
     looked_at_ = now;
     GenicamFailure failure;
     const double exposure_us = arv_camera_get_exposure_time(device_->camera.get(), failure.slot());
@@ -346,9 +352,14 @@ void GenicamCamera::tell_silence() {
 
 void GenicamCamera::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
-        const bool there = receive();
-        if (there && still_as_set()) continue;
-        if (!there) tell_silence();
+        try {
+            const bool there = receive();
+            if (there && still_as_set()) continue;
+            if (!there) tell_silence();
+        } catch (const std::exception& fault) {  // no memory for a picture, say
+            frames_.fail({fmt::format("its pictures cannot be taken ({})", fault.what()),
+                          "Close other programs, or switch it off and on again."});
+        }
         reopen(stop);
     }
 }

@@ -10,6 +10,28 @@ constexpr std::uint32_t kMono8 = 0x01080001, kMono10 = 0x01100003, kMono12 = 0x0
                         kMono16 = 0x01100007, kMono10Packed = 0x010C0004, kMono12Packed = 0x010C0006,
                         kMono10p = 0x010A0046, kMono12p = 0x010C0047;
 
+/// Bytes that so many pixels take; empty for what is no grey picture.
+std::optional<std::size_t> bytes_of(std::size_t pixels, std::uint32_t format) {
+    switch (format) {
+        case kMono8:
+            return pixels;
+        case kMono10:
+        case kMono12:
+        case kMono14:
+        case kMono16:
+            return 2 * pixels;
+        case kMono10Packed:
+        case kMono12Packed:  // two pixels in three bytes; a last one alone has two
+            return pixels / 2 * 3 + pixels % 2 * 2;
+        case kMono10p:
+            return (pixels * 10 + 7) / 8;
+        case kMono12p:
+            return (pixels * 12 + 7) / 8;
+        default:
+            return std::nullopt;
+    }
+}
+
 int bits_of_two_bytes(std::uint32_t format) {
     switch (format) {
         case kMono10:
@@ -31,16 +53,15 @@ std::optional<GrayImage> mono_picture(std::span<const std::uint8_t> data, int wi
                                       std::uint32_t pixel_format) {
     if (width <= 0 || height <= 0) return std::nullopt;
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    const auto enough = [&](std::size_t bits) { return data.size() * 8 >= pixels * bits; };
+    // Before any memory is taken: a camera's header can say anything.
+    if (const auto needed = bytes_of(pixels, pixel_format); !needed || data.size() < *needed) return std::nullopt;
     GrayImage picture(width, height);
     auto* out = picture.pixels.data();
     if (pixel_format == kMono8) {
-        if (!enough(8)) return std::nullopt;
         std::memcpy(out, data.data(), pixels);
         return picture;
     }
     if (const int bits = bits_of_two_bytes(pixel_format); bits > 0) {
-        if (!enough(16)) return std::nullopt;
         for (std::size_t i = 0; i < pixels; ++i) {
             const unsigned value = data[2 * i] | static_cast<unsigned>(data[2 * i + 1]) << 8;
             out[i] = static_cast<std::uint8_t>(value >> (bits - 8) & 0xFF);
@@ -49,13 +70,11 @@ std::optional<GrayImage> mono_picture(std::span<const std::uint8_t> data, int wi
     }
     if (pixel_format == kMono10Packed || pixel_format == kMono12Packed) {
         // Two pixels in three bytes; the upper eight bits of each have a byte of their own.
-        if (data.size() < (pixels / 2) * 3 + (pixels % 2) * 2) return std::nullopt;
         for (std::size_t i = 0; i < pixels; ++i) out[i] = data[i / 2 * 3 + (i % 2) * 2];
         return picture;
     }
     if (pixel_format == kMono10p || pixel_format == kMono12p) {
         const std::size_t bits = pixel_format == kMono10p ? 10 : 12;  // one after the other, lowest bit first
-        if (!enough(bits)) return std::nullopt;
         for (std::size_t i = 0; i < pixels; ++i) {
             const std::size_t upper = i * bits + bits - 8, byte = upper / 8, shift = upper % 8;
             unsigned value = data[byte];

@@ -72,7 +72,9 @@ void place_projector(const std::optional<Resection>& resection, RigCalibration& 
 /// The codes are matched once; where the devices stand is found from a part of the matches, then all are placed.
 void triangulate_and_resect(const ScanSettings& settings, ScanResult& result, RigCalibration& rig) {
     if (result.left.row.empty() || result.right.row.empty()) {
-        result.rig.sentence = "whether the rig moved is not known: the light codes the projector's columns only";
+        result.rig.sentence =
+            "whether the rig moved is not known: the light codes the projector's columns only (the full set codes rows "
+            "as well)";
         result.raw = triangulate(result.left, result.right, rig, settings.triangulation);
         return;
     }

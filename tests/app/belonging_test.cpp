@@ -63,6 +63,55 @@ TEST(RigOfAMatch, DecidesWhetherItMayBeUsed) {
     EXPECT_EQ(match_with(std::nullopt).verdict, Verdict::yes) << "the cloud of another scanner";
 }
 
+/// Pictures that are read with another period than they were made with look like a zoom, all of one scan.
+TEST(RigOfAMatch, AsksWhereTheProjectorSeemsToHaveZoomed) {
+    RigState state = a_state(RigState::Verdict::corrected);
+    double& zoomed = state.devices[static_cast<std::size_t>(RigDevice::projector)].focal_change;
+    for (const double change : {-0.0604, -0.006, 0.006, 0.0604}) {
+        zoomed = change;
+        const RegistrationResult match = match_with(state);
+        EXPECT_EQ(match.verdict, Verdict::ask);
+        EXPECT_NE(match.reasons.back().find("capture.json"), std::string::npos) << match.reasons.back();
+    }
+    zoomed = 0.002;
+    EXPECT_EQ(match_with(state).verdict, Verdict::yes) << "a focus that was touched";
+}
+
+/// Seen from 700 mm by the projector of the rig: 2 mm are four of its pixels and more.
+TEST(Belonging, PointsThatDoNotLieWhereTheirRigSawThemAreRefused) {
+    const RigState state = a_state(RigState::Verdict::as_calibrated);
+    PointCloud cloud;
+    for (int i = 0; i < 400; ++i) {
+        cloud.points_in_rig.emplace_back(5 * (i % 20) - 50, 5 * (i / 20) - 50, 700 + i % 7);
+        const auto pixel = project(state.rig.projector, cloud.points_in_rig.back());
+        ASSERT_TRUE(pixel);
+        cloud.pixels_in_projector.push_back(*pixel);
+    }
+    EXPECT_NO_THROW(check_points(cloud, state, "c"));
+    PointCloud part = cloud;
+    part.points_in_rig.resize(100);
+    part.pixels_in_projector.resize(100);
+    EXPECT_NO_THROW(check_points(part, state, "c")) << "deleted points are no harm";
+    const auto with = [&](const auto& change) {
+        PointCloud changed = cloud;
+        for (std::size_t i = 0; i < changed.points_in_rig.size(); ++i) change(changed.points_in_rig[i], i);
+        return changed;
+    };
+    using Eigen::Vector3d;
+    EXPECT_THROW(check_points(with([](Vector3d& p, std::size_t) { p.x() += 20; }), state, "c"), DamagedFileError);
+    EXPECT_THROW(check_points(with([](Vector3d& p, std::size_t) { p.y() += 20; }), state, "c"), DamagedFileError);
+    EXPECT_THROW(check_points(with([](Vector3d& p, std::size_t) { p *= 0.001; }), state, "c"), DamagedFileError);
+    EXPECT_THROW(check_points(with([](Vector3d& p, std::size_t) { p.x() = -p.x(); }), state, "c"), DamagedFileError);
+    EXPECT_THROW(check_points(with([](Vector3d& p, std::size_t i) { p.x() += i % 10 == 0 ? 40 : 0; }), state, "c"),
+                 DamagedFileError)
+        << "a tenth of them";
+    PointCloud bare = cloud;
+    bare.pixels_in_projector.clear();
+    EXPECT_THROW(check_points(bare, state, "c"), DamagedFileError);
+    EXPECT_NO_THROW(check_points(bare, std::nullopt, "c")) << "of another scanner";
+    EXPECT_NO_THROW(check_points(bare, a_state(RigState::Verdict::unknown), "c")) << "asked about anyway";
+}
+
 /// A camera turned by 0.2 degrees moves a point 700 mm away and seen from 300 mm apart by 5 mm in depth.
 TEST(RigOfAMatch, AsksWhereAPlanPointMayBeOffAndSaysItInTheBound) {
     RigState state = a_state(RigState::Verdict::corrected);
@@ -126,6 +175,9 @@ TEST(Belonging, AnotherRigCaseOrScanIsRefusedAndWhatIsNotSaidIsSaid) {
     Case other = a_case();
     other.volume_hash = "another";
     EXPECT_THROW(check_case(match, other, "m", unknown), InputError);
+    other = a_case();
+    other.code = "another plan";
+    EXPECT_THROW(check_case(match, other, "m", unknown), InputError) << "it was judged at the points of that one";
     RigCalibration moved = test::example_rig();
     moved.left_camera.focal_x += 1e-9;
     EXPECT_THROW(check_rig(match, moved, "m", "r", unknown), InputError);

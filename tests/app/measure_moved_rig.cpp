@@ -1,5 +1,5 @@
 // Rigs that moved between calibration and scan: measure_moved_rig [paper|modern] [FIRST SEED] [ROOMS] [DRAWS A ROOM]
-// [--before] [--only WORDS] [--list].
+// [--before] [--set full|fast] [--only WORDS] [--list].
 //
 // Every room is rendered and scanned once. Then rig.json is changed as if one device had been bumped since (which is
 // the same as the device bumped and the file kept): turned by 0.01 to 1 degree, shifted by 0.1 to 5 mm in any direction
@@ -36,7 +36,7 @@ namespace {
 struct Options {
     Preset preset = Preset::paper;
     unsigned seed = 1, rooms = 2, draws = 10;
-    bool before = false, list = false;
+    bool before = false, list = false, fast = false;
     std::string only;
 };
 
@@ -49,6 +49,8 @@ Options parse(int argc, char** argv) {
             o.before = true;
         else if (word == "--list")
             o.list = true;
+        else if (word == "--set")
+            o.fast = i + 1 < argc && argv[++i] == std::string("fast");
         else if (word == "--only")
             o.only = i + 1 < argc ? argv[++i] : "";
         else if (word == "paper" || word == "modern")
@@ -117,6 +119,7 @@ public:
         StripeSettings stripes;
         stripes.width = room_.projector().width();
         stripes.height = room_.projector().height();
+        if (options.fast) stripes = fast_stripes(stripes.width, stripes.height);
         capture_ = capture_scan(room_.projector(), room_.cameras(), room_.clock(), stripes);
         find_plan_points();
         RgbImage white(stripes.width, stripes.height, {255, 255, 255});

@@ -125,8 +125,42 @@ TEST_F(CommandsTest, ACaseIsReplacedOnlyWhenThatIsSaid) {
                               "--replace");
 }
 
+/// A full disk behind it, or a terminal that has gone, is no reason to end in the middle, or by another exit code.
+TEST_F(CommandsTest, AStandardErrorThatTakesNothingChangesNothing) {
+    const auto code_of = [](const std::string& line) {
+        const int status = std::system(line.c_str());
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    };
+    const std::string program = "'" PLANLIGHT_PROGRAM "' ";
+    for (const char* nowhere : {" 2>/dev/full", " 2>&-"}) {
+        EXPECT_EQ(code_of(program + "plan /nowhere/plan.mrk.json" + nowhere), 3) << nowhere;
+        EXPECT_EQ(code_of(program + "plan '" + plan() + "' >/dev/null" + nowhere), 0) << nowhere;
+    }
+    const fs::path file = root() / "first-file.png";
+    EXPECT_EQ(code_of(program + "board --size A4 --out '" + file.string() + "' >/dev/null 2>&-"),
+              code_of(program + "board --size A4 --out '" + (root() / "second-file.png").string() + "' >/dev/null"));
+    EXPECT_EQ(read_text(file), read_text(root() / "second-file.png")) << "no message stands in it";
+}
+
+TEST_F(CommandsTest, ALogIsAddedToLogsOnly) {
+    const fs::path log = root() / "some.log", other = root() / "notes.txt";
+    std::ofstream(other) << "Not a log, and of value to somebody.\n";
+    const std::string before = read_text(other);
+    for (int run = 0; run < 2; ++run)
+        EXPECT_EQ(run_planlight("plan " + plan() + " --log-file some.log", root()).exit_code, 0) << run;
+    EXPECT_GT(read_text(log).size(), 0u);
+    EXPECT_EQ(run_planlight("plan " + plan() + " --log-file " + plan(), root()).exit_code, 2) << "an input";
+    expect_one_clear_sentence(run_planlight("plan " + plan() + " --log-file notes.txt", root()), 3, "no log");
+    EXPECT_EQ(read_text(other), before);
+}
+
 TEST_F(CommandsTest, WrongUsageGivesExitTwo) {
     EXPECT_EQ(run_planlight("prepare", root()).exit_code, 2);
+    EXPECT_EQ(run_planlight("prepare " + patient() + " --plan " + plan() + " --voxel-mm nan --out n", root()).exit_code,
+              2);
+    const auto frame = run_planlight("project case --rig r.json --registration m.json --frame 3 --out l.png", root());
+    EXPECT_EQ(frame.exit_code, 2);
+    EXPECT_NE(frame.err.find("--poses"), std::string::npos) << frame.err;
     EXPECT_EQ(run_planlight("nonsense", root()).exit_code, 2);
     EXPECT_EQ(run_planlight("demo --preset both --seeds -3", root()).exit_code, 2);
 }

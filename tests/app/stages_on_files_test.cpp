@@ -126,6 +126,7 @@ TEST_F(CommandsTest, LandmarksAloneAreAskedForAndWrongOnesAreRefused) {
     write("good.csv", "# SPACE=LPS\n", 1);
     write("bad.csv", "# SPACE=LPS\n", 40);
     write("unsaid.csv", "", 0);
+    write("elsewhere.csv", "# SPACE=RAS\n", 0);
     const auto found = run_planlight("register case --pairs good.csv --out pairs.json --json", root());
     ASSERT_EQ(found.exit_code, 0) << found.err;
     EXPECT_EQ(json::parse(found.out)["verdict"], "ask");
@@ -140,6 +141,8 @@ TEST_F(CommandsTest, LandmarksAloneAreAskedForAndWrongOnesAreRefused) {
         EXPECT_TRUE(why[name].is_null()) << name << " was not looked at";
     expect_one_clear_sentence(run_planlight("register case --pairs unsaid.csv --out refused2.json", root()), 3,
                               "SPACE=");
+    expect_one_clear_sentence(run_planlight("register case --pairs elsewhere.csv --out refused2.json", root()), 3,
+                              "off the skin of the case");
     EXPECT_EQ(run_planlight("register case --out refused3.json", root()).exit_code, 2);
     EXPECT_EQ(run_planlight("review case --landmarks good.csv", root()).exit_code, 2)
         << "landmarks are clicked on a scan";

@@ -103,14 +103,57 @@ TEST(LightGate, OtherLightIsGreenWhenItHasBeenMeasuredItself) {
     Instant now{};
     EXPECT_EQ(after(gate, now, 10, seen_at(0.1)).trust, LightTrust::look);
     gate.verify(now);
-    gate.other_light(now);
+    gate.other_light();
     EXPECT_EQ(after(gate, now, 1, std::nullopt).trust, LightTrust::look) << "nobody has seen it yet";
     EXPECT_EQ(after(gate, now, 2, seen_at(0.1)).trust, LightTrust::look) << "two measurements are fewer than three";
     EXPECT_EQ(after(gate, now, 1, seen_at(0.1)).trust, LightTrust::aligned);
-    gate.other_light(now);
+    gate.other_light();
     EXPECT_TRUE(gate.verified()) << "a person has looked";
     EXPECT_EQ(after(gate, now, 10, std::nullopt).headline, "LOOK: the light is being measured.");
     EXPECT_EQ(after(gate, now, 30, std::nullopt).headline, "LOOK: the light is not measured.");
+}
+
+/// Darkness is no time in which the light was not measured.
+TEST(LightGate, LightThatWasStoppedAndComesBackIsBeingMeasured) {
+    LightGate gate;
+    Instant now{};
+    after(gate, now, 10, seen_at(0.1));
+    now += 20s;  // Stop: nothing is asked of the gate
+    gate.restart();
+    EXPECT_EQ(after(gate, now, 1, std::nullopt).headline, "LOOK: the light is being measured.");
+    gate.new_match();
+    now += 20s;
+    EXPECT_EQ(after(gate, now, 1, std::nullopt).headline, "LOOK: the light is being measured.");
+}
+
+/// Two stretches side by side lie elsewhere than the item as a whole, in two looks of a second.
+TEST(LightGate, APartOfAnItemThatLiesAsideIsNoGreenUntilItIsSeenRightForASecond) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    LightCheck right = seen_at(0.1), aside = right;
+    right.items = aside.items = {item("Hole 1", 8, 8, 0.1), item("Cut", 20, 20, 0.1)};
+    aside.items[1].part_off_mm = 2.4;
+    EXPECT_EQ(after(gate, now, 10, right).trust, LightTrust::aligned);
+    EXPECT_EQ(after(gate, now, 1, aside).trust, LightTrust::aligned) << "once may be chance";
+    const auto ruling = after(gate, now, 1, aside);
+    EXPECT_EQ(ruling.trust, LightTrust::look);
+    EXPECT_EQ(ruling.headline, "LOOK: a part of \"Cut\" lies 2.4 mm beside its place.");
+    EXPECT_TRUE(ruling.found_wrong);
+    EXPECT_EQ(after(gate, now, 20, right).trust, LightTrust::look) << "0.8 s later";
+    EXPECT_EQ(after(gate, now, 8, right).trust, LightTrust::aligned);
+}
+
+/// 95 % of what is seen is not 95 % of the light.
+TEST(LightGate, GreenSaysHowMuchOfTheLightIsSeen) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    LightCheck half = seen_at(0.1, 21, 40);
+    half.lit = 40;
+    const auto ruling = after(gate, now, 10, half);
+    EXPECT_EQ(ruling.trust, LightTrust::aligned);
+    EXPECT_EQ(ruling.details.back(), "They see about 50 % of the light.");
 }
 
 TEST(LightGate, ForbidsLightBeforeItIsLit) {
@@ -263,7 +306,7 @@ TEST(LightGate, AnItemOfWhichTheCamerasSeeLittleIsMeasuredInPartOnly) {
     check.items[1].lit_segments = 8;
     const auto most = after(gate, now, 40, check);
     EXPECT_EQ(most.trust, LightTrust::aligned);
-    EXPECT_EQ(most.details.back(), "They can see about 70 % of the light.");
+    EXPECT_EQ(most.details.back(), "They see about 70 % of the light.");
 }
 
 TEST(LightGate, LinesThatLampsOutshineAreWarnedOf) {

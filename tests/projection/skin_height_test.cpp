@@ -84,6 +84,49 @@ TEST(SkinHeight, LightOnSkinThatHasRisenUnderOneItemLiesAsideByItsSlant) {
     }
 }
 
+/// The skin has risen under a part of a long line, by an injection or a retractor say: most of it lies right, and 95 %
+/// of all the light, but that part lies millimetres aside.
+TEST(SkinHeight, APartOfALineOnRisenSkinIsNoGreen) {
+    struct Cut {
+        double longitude[2], latitude[2], at;  ///< from where to where, and the share of its way that has risen
+    };
+    const RigCalibration rig = test::rig_before_ball();
+    for (const Cut& cut : {Cut{{0.95, 0.95}, {-0.35, 1.0}, 0.5}, Cut{{0.95, 0.95}, {-0.35, 1.0}, 0.15},
+                           Cut{{-0.4, -0.4}, {-0.2, 1.0}, 0.2}}) {
+        const auto along = [&](double share) {
+            return test::on_ball(std::lerp(cut.longitude[0], cut.longitude[1], share),
+                                 std::lerp(cut.latitude[0], cut.latitude[1], share));
+        };
+        Plan plan;
+        plan.boreholes = {hole("Hole 1", 0.1, 0.35), hole("Hole 2", 0.5, 0.3),  hole("Hole 3", 0.3, 0.65),
+                          hole("Hole 4", -0.1, 0.6), hole("Hole 5", 0.7, 0.65), hole("Hole 6", 0.3, 0.05)};
+        OsteotomyLine line;
+        line.name = "Line";
+        for (int k = 0; k <= 16; ++k) line.points_in_ct.push_back(along(k / 16.0));
+        plan.osteotomy_lines.push_back(line);
+        const PlanDrawing drawing = drawing_of(plan);
+        for (const double risen_mm : {0.0, 3.0, 4.0, 6.0}) {
+            test::LitBall lit;
+            lit.swollen = along(cut.at);
+            lit.swollen_mm = risen_mm;
+            const LightCheck check = check_light(drawing, test::ball(), rig, RigidTransform::Identity(),
+                                                 test::pictures_of(drawing, rig, lit));
+            const auto cut_light = std::ranges::find(check.items, "Line", &ItemLight::name);
+            ASSERT_NE(cut_light, check.items.end());
+            const LightGate::Ruling ruling = ruling_of(check);
+            std::printf("risen by %.0f mm at %.2f of the way: %.2f mm aside; all of the line %.2f, a part %.2f: %s\n",
+                        risen_mm, cut.at, aside_mm(*lit.swollen, risen_mm, rig), cut_light->off_mm,
+                        cut_light->part_off_mm, ruling.headline.c_str());
+            EXPECT_EQ(ruling.trust == LightTrust::aligned, risen_mm == 0) << ruling.headline;
+            if (risen_mm == 0) {
+                EXPECT_LT(cut_light->part_off_mm, 0.3);
+            } else if (check.off_mm <= 1) {
+                EXPECT_NE(ruling.headline.find("Line"), std::string::npos) << ruling.headline;
+            }
+        }
+    }
+}
+
 /// What the projector lights, the gate knows of, though it is too steep to be measured.
 TEST(SkinHeight, AnItemThatIsLitButTooSteepToBeMeasuredIsNoGreen) {
     EXPECT_EQ(RenderSettings{}.steepest, CheckLightSettings{}.steepest_lit);

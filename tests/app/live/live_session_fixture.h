@@ -45,8 +45,9 @@ public:
     void updated(const Session&, const Session::Update&) noexcept override { ++since; }
     void gate(GateCall call, Instant, double, const LightGate::Ruling*) noexcept override {
         if (call == GateCall::forbids) ++forbidden;
+        if (call == GateCall::other_light) ++other_light;
     }
-    std::atomic<int> since{0}, forbidden{0};
+    std::atomic<int> since{0}, forbidden{0}, other_light{0};
 };
 
 /// A session in the simulated room, from its first moment.

@@ -156,6 +156,32 @@ private:
     simulation::SimulatedRig rig_;
 };
 
+// The second press comes before the first one's turn: neither is lost.
+TEST_F(LiveSessionTest, TrackAndAtOnceACheckOfTheSkinAreBothDone) {
+    followed();
+    session->post(OperatorAction::stop);
+    wait_for(*session, "Track", [](const OperatorModel& m) { return m.track.enabled; });
+    hold();
+    ASSERT_EQ(session->post(OperatorAction::track), "");
+    ASSERT_EQ(session->post(OperatorAction::check_skin), "");
+    held = false;
+    wait_for(*session, "the check", [](const OperatorModel& m) {
+        return !m.evidence.empty() && m.evidence.front().starts_with("Skin checked");
+    });
+    wait_for(*session, "light", [&](const OperatorModel&) { return session->projecting(); });
+}
+
+// Stripes took the plan's place: what was measured before them is not of the light after them.
+TEST_F(LiveSessionTest, AfterACheckOfTheSkinTheLightIsMeasuredAnew) {
+    followed();
+    wait_for(*session, "the button", [](const OperatorModel& m) { return m.check_skin; });
+    ASSERT_EQ(session->post(OperatorAction::check_skin), "");
+    wait_for(*session, "the check", [](const OperatorModel& m) {
+        return !m.evidence.empty() && m.evidence.front().starts_with("Skin checked");
+    });
+    EXPECT_EQ(counts.other_light, 1);
+}
+
 class LiveSessionWithSlippedMarkers : public LiveSessionTest {
 protected:
     std::unique_ptr<Room> made_room() override {
@@ -172,7 +198,7 @@ protected:
 
 // All markers slipped together: they agree with each other, and the light with them; only the skin tells. From then on
 // there is no light by that match, however often Track is pressed.
-TEST_F(LiveSessionWithSlippedMarkers, SkinThatLiesAsideForbidsLightUntilTheNextMatch) {
+TEST_F(LiveSessionWithSlippedMarkers, SkinThatLiesAsideForbidsLightUntilTheNextScan) {
     followed();
     hold();
     entered->slip();
@@ -182,6 +208,9 @@ TEST_F(LiveSessionWithSlippedMarkers, SkinThatLiesAsideForbidsLightUntilTheNextM
     const OperatorModel first = refused();
     EXPECT_TRUE(says(first, "skin")) << first.status.headline;
     EXPECT_EQ(first.next, OperatorAction::scan) << "Enter and the pedal lead to a new scan";
+    EXPECT_FALSE(first.do_register.enabled);
+    EXPECT_EQ(session->post(OperatorAction::do_register), "Register is not possible now: scan first.")
+        << "a match on the scan from before the slip is as far off as this one";
     EXPECT_EQ(bright_pixels(), -1);
     const int updates = counts.since;
     for (int press = 1; press <= 3; ++press) {

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/ptrace.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <string>
@@ -31,7 +34,7 @@ std::vector<std::string> own_arguments() {
 /// Monitor number 1 is HDMI-2; a name is itself. Notes what would be lit, and what not.
 [[noreturn]] void serve(const std::string& asked) {
     std::ofstream notes(std::getenv(kNotesAt), std::ios::app);
-    notes << "opened " << asked << std::endl;
+    notes << "process " << getpid() << std::endl << "opened " << asked << std::endl;
     LightMailbox mailbox(kProjectorMailbox);
     mailbox.say_alive(SteadyClock().now());
     mailbox.say_ready(8, 6, asked == "1" ? "HDMI-2" : asked);
@@ -84,6 +87,53 @@ TEST_F(ProjectorKeeperTest, AProjectorThatWasNamedByItsNumberComesBackOnItsOutpu
     const Instant until = SteadyClock().now() + 20s;
     while (projector.starts() < 2 && SteadyClock().now() < until) std::this_thread::sleep_for(2ms);
     EXPECT_EQ(noted("opened"), (std::vector<std::string>{"opened 1", "opened HDMI-2"}));
+}
+
+// One that hangs in the graphics driver is killed and does not go; here another process holds it back. The operator's
+// window is not held up by it, and is told that its light may be on; no second one is started beside it.
+TEST_F(ProjectorKeeperTest, AProcessThatCannotBeEndedIsSaidAndWaitedForByNobody) {
+    settings_.process.silence_allowed = 200ms;
+    ProjectorKeeper projector("1", settings_);
+    ASSERT_EQ(noted("process ").size(), 1u);
+    const pid_t stuck = std::stoi(noted("process ").front().substr(8));
+    int ready[2];
+    ASSERT_EQ(pipe(ready), 0);
+    const pid_t holder = fork();
+    if (holder == 0) {
+        const char held = ptrace(PTRACE_SEIZE, stuck, 0, 0) == 0 ? 'y' : 'n';
+        static_cast<void>(!write(ready[1], &held, 1));
+        pause();
+        _exit(0);
+    }
+    char held = 'n';
+    ASSERT_EQ(read(ready[0], &held, 1), 1);
+    const auto let_go = [&] {
+        kill(holder, SIGKILL);
+        waitpid(holder, nullptr, 0);
+    };
+    if (held != 'y') {
+        let_go();
+        GTEST_SKIP() << "no process may be traced here";
+    }
+    projector.disturb(SIGSTOP);
+    ProjectorProblem problem;
+    Instant longest{};
+    for (const Instant until = SteadyClock().now() + 10s; problem.empty() && SteadyClock().now() < until;) {
+        const Instant before = SteadyClock().now();
+        problem = projector.problem();
+        longest = std::max(longest, SteadyClock().now() - before);
+        std::this_thread::sleep_for(2ms);
+    }
+    EXPECT_EQ(problem.what, "Projector process: it cannot be ended, and its light may still be on");
+    EXPECT_LT(longest, 2s);
+    std::this_thread::sleep_for(100ms);
+    EXPECT_EQ(projector.starts(), 1);
+    EXPECT_EQ(projector.problem().what, problem.what);
+    projector.disturb(0);  // there is none: no process may be meant by that
+    let_go();
+    for (const Instant until = SteadyClock().now() + 20s; projector.starts() < 2 && SteadyClock().now() < until;)
+        std::this_thread::sleep_for(2ms);
+    EXPECT_EQ(projector.starts(), 2) << "it has gone, and another is started";
 }
 
 // Its lease has run out by then: nobody may be told that the picture is on the skin.

@@ -1,7 +1,9 @@
 // How long a light outlives the program that holds it, in the pixels of the monitor. Run by two_monitors.sh on an X
 // server with two monitors: `watch_darkness FOLDER`, with PLANLIGHT the program (for its projector process) and ROUNDS
 // how often each fault is tried (default 3). The same executable, as `watch_darkness hold MONITOR`, is the program that
-// is stopped, killed, or made to hang while its light is on. Exit code 0 when every light was dark in 300 ms.
+// is stopped, killed, or made to hang while its light is on. Exit code 0 when every light was dark in 300 ms. With
+// HANG_IN_SWAP, the library of that name, also a graphics driver that hangs before a picture expires, while nothing
+// else is ordered: dark in 900 ms, or in 400 ms from the end of the program.
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -30,15 +32,18 @@ constexpr Instant kLongest = 300ms;
 volatile std::sig_atomic_t deadlock = 0, endless_loop = 0;
 
 /// Holds a white light as a session does: checks, renews, sleeps. SIGUSR1 makes it a deadlock, SIGUSR2 a loop without
-/// end.
+/// end. The picture expires after EXPIRES_MS, if that is set.
 int hold(const std::string& monitor) {
+    const char* const expires_ms = std::getenv("EXPIRES_MS");
     std::signal(SIGUSR1, [](int) { deadlock = 1; });
     std::signal(SIGUSR2, [](int) { endless_loop = 1; });
     ProjectorProcessSettings settings;
     settings.program = std::getenv("PLANLIGHT");
     ProjectorProcess projector(monitor, settings);
     projector.renew();
-    projector.show(RgbImage(projector.width(), projector.height(), {255, 255, 255}), SteadyClock().now() + 600s);
+    projector.show(RgbImage(projector.width(), projector.height(), {255, 255, 255}),
+                   SteadyClock().now() +
+                       (expires_ms == nullptr ? Instant(600s) : std::chrono::milliseconds(std::atoi(expires_ms))));
     fmt::print("{}\n", projector.process());
     std::fflush(stdout);
     for (;;) {
@@ -127,6 +132,46 @@ void watch(const char* self, const Monitor& monitor, int rounds) {
     }
 }
 
+/// The picture expires while the driver hangs, and nothing is ordered: its black cannot be drawn, nor is anybody
+/// waiting for it.
+void watch_hanging_driver(const char* self, const Monitor& monitor, int rounds, const std::string& folder) {
+    constexpr auto kExpires = 600ms;
+    const std::string file = folder + "/hang_now";
+    setenv("LD_PRELOAD", std::getenv("HANG_IN_SWAP"), 1);
+    setenv("HANG_WHEN", file.c_str(), 1);
+    setenv("EXPIRES_MS", std::to_string(kExpires.count()).c_str(), 1);
+    const test::ScreenPixel eye(monitor);
+    for (const bool killed : {false, true}) {
+        const Instant longest = killed ? 400ms : 900ms;
+        Instant worst{};
+        int never = 0;
+        for (int round = 0; round < rounds; ++round) {
+            unlink(file.c_str());
+            const Holder holder = start_holder(self, monitor.name);
+            const Instant lit = SteadyClock().now();
+            if (holder.projector <= 0 || !eye.lit()) expect(false, "there was light before");
+            std::fclose(std::fopen(file.c_str(), "w"));
+            std::this_thread::sleep_for(kExpires - (SteadyClock().now() - lit));
+            if (killed) kill(holder.program, SIGKILL);
+            if (const auto dark = eye.until_dark(5s))
+                worst = std::max(worst, *dark);
+            else
+                ++never;
+            kill(holder.program, SIGKILL);
+            waitpid(holder.program, nullptr, 0);
+            kill(holder.projector, SIGKILL);
+            std::this_thread::sleep_for(20ms);
+        }
+        expect(
+            never == 0 && worst <= longest,
+            fmt::format("the graphics driver hangs as a picture expires{}: dark after {:.0f} ms (worst of {}), never "
+                        "{} times",
+                        killed ? ", and the program is killed" : "", 1000 * seconds(worst), rounds, never));
+    }
+    unlink(file.c_str());
+    for (const char* name : {"LD_PRELOAD", "HANG_WHEN", "EXPIRES_MS"}) unsetenv(name);
+}
+
 void second_master(const Monitor& monitor) {
     ProjectorProcessSettings settings;
     settings.program = std::getenv("PLANLIGHT");
@@ -153,8 +198,10 @@ int main(int argc, char** argv) {
     }
     const std::vector<Monitor> monitors = list_monitors();
     if (std::getenv("PLANLIGHT") == nullptr || monitors.size() != 2) return 2;
-    const char* const rounds = std::getenv("ROUNDS");
+    const int rounds = std::getenv("ROUNDS") == nullptr ? 3 : std::atoi(std::getenv("ROUNDS"));
     second_master(monitors[1]);
-    watch(argv[0], monitors[1], rounds == nullptr ? 3 : std::atoi(rounds));
+    if (std::getenv("HANG_IN_SWAP") != nullptr)
+        watch_hanging_driver(argv[0], monitors[1], rounds, argc > 1 ? argv[1] : "/tmp");
+    watch(argv[0], monitors[1], rounds);
     return test::failures() == 0 ? 0 : 1;
 }

@@ -3,7 +3,9 @@
 #include <filesystem>
 
 #include "planning_io/case/case_folder.h"
+#include "planning_io/files/content_hash.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/plan/plan_file.h"
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 #include "tests/support/analytic_head.h"
@@ -59,6 +61,31 @@ TEST(CaseFolder, ReadsBackAndIsReplacedOnlyWhenAsked) {
     write_safely(folder.path() / "photos" / "a.txt", "mine");
     EXPECT_THROW(write_case(made, folder.path() / "photos", true), InputError) << "only a case is ever replaced";
     EXPECT_EQ(read_whole(folder.path() / "photos" / "a.txt"), "mine");
+}
+
+// Checksums that are made anew say nothing of which case a file is of.
+TEST(CaseFolder, APlanOfAnotherCaseIsRefusedThoughItsChecksumHolds) {
+    const test::TemporaryFolder folder;
+    Case made = a_case();
+    made.plan_hash = hash_of(made.plan);
+    const fs::path mine = folder.path() / "mine", other = folder.path() / "other";
+    write_case(made, mine);
+    EXPECT_NO_THROW(read_case(mine));
+    made.plan.trajectories[0].target_in_ct = {4, 5, 12};
+    made.plan_hash = hash_of(made.plan);
+    write_case(made, other);
+    const std::string list = read_whole(mine / "checksums.xxh128"), of_plan = content_hash_of(mine / "plan.mrk.json");
+    ASSERT_NE(list.find(of_plan), std::string::npos);
+    fs::copy_file(other / "plan.mrk.json", mine / "plan.mrk.json", fs::copy_options::overwrite_existing);
+    std::string anew = list;
+    anew.replace(list.find(of_plan), of_plan.size(), content_hash_of(mine / "plan.mrk.json"));
+    write_safely(mine / "checksums.xxh128", anew);
+    try {
+        read_case(mine);
+        FAIL() << "took another case's plan";
+    } catch (const InputError& e) {
+        EXPECT_NE(std::string(e.what()).find("is the plan of another case"), std::string::npos) << e.what();
+    }
 }
 
 TEST(CaseFolder, ALutOfAnotherCaseIsRefusedAndDamageInAnyFileIsFound) {

@@ -111,6 +111,30 @@ TEST(GenicamCamera, ASilentCameraIsAFaultAndComesBackByItself) {
     EXPECT_EQ(opened.frames().counts().lost_connections, 1u);
 }
 
+// It is not waited for by asking it for its exposure, which takes seconds to fail.
+TEST(GenicamCamera, ACameraWithoutPowerIsAFaultWithinASecond) {
+    const OneAtATime turn;
+    ServedCamera camera(small_camera());
+    const Source source(camera);
+    FrameBell bell;
+    const SteadyClock clock;
+    GenicamSettings settings;
+    settings.device = "T-17";
+    GenicamCamera opened(settings, bell, clock);
+    ASSERT_TRUE(within(milliseconds(10000), [&] { return !opened.frames().take_all().empty(); }));
+    int soon = 0;
+    for (int time = 0; time < 3; ++time) {  // one read may be on its way when the power goes
+        ASSERT_TRUE(within(milliseconds(20000),
+                           [&] { return !opened.frames().fault() && !opened.frames().take_all().empty(); }));
+        camera.power(false);
+        const Instant off = clock.now();
+        ASSERT_TRUE(within(milliseconds(8000), [&] { return opened.frames().fault().has_value(); }));
+        soon += clock.now() - off < std::chrono::seconds(1);
+        camera.power(true);
+    }
+    EXPECT_GE(soon, 2);
+}
+
 TEST(GenicamCamera, ACameraThatSendsOnePictureUnderNewTimesIsAFault) {
     const OneAtATime turn;
     ServedCamera camera(small_camera());

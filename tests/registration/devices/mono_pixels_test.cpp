@@ -28,6 +28,8 @@ TEST(MonoPixels, EveryFormatHasTheSameUpperBits) {
         EXPECT_FALSE(mono_picture(bytes, 300, 1, format)) << "too few bytes";
     }
     EXPECT_FALSE(mono_picture(formats[0].second, 1, 1, 0x02180014)) << "RGB8";
+    for (const auto& [format, bytes] : formats)
+        EXPECT_FALSE(mono_picture(bytes, 2'000'000'000, 2'000'000'000, format)) << "and no memory is asked for";
 }
 
 }  // namespace
