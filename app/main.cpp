@@ -15,6 +15,7 @@
 #include "app/freed_memory.h"
 #include "app/site_settings.h"
 #include "planning_io/types/error.h"
+#include "projection/projector_process.h"
 
 namespace {
 
@@ -99,5 +100,9 @@ int main(int argc, char** argv) {
         print_to_user(usage_problem(app, error) + "\n");
         return static_cast<int>(ExitCode::usage);
     }
-    return run_and_explain(chosen);
+    const int code = run_and_explain(chosen);
+    if (a_projector_process_hangs())
+        print_to_user(
+            "planlight: the projector's light may still be on: its process hangs. Switch the projector off.\n");
+    return code;
 }

@@ -15,6 +15,8 @@
 namespace planlight {
 namespace {
 
+constexpr int kFewMoments = 5;  ///< of a scan, in which the markers are seen
+
 /// Where light of the plan lies: both ends and the middle of what is drawn, labels and marks aside, in patient.
 std::vector<Eigen::Vector3d> places_of_light(const PlanDrawing& drawing, const RigidTransform& patient_from_ct) {
     std::vector<Eigen::Vector3d> places;
@@ -111,8 +113,13 @@ void Session::make_scan(const std::function<void(int, int)>& progress) {
     for (scans_repeated_ = 0;; ++scans_repeated_) {
         capture_ = capture_scan(projector_, cameras_, clock_, stripes, progress);
         take_reference(*capture_);
-        motion_in_scan_mm_ =
-            std::max(moved_at_the_end_mm(), movement_of_markers(*capture_, rig_, settings_.tracking).moved_mm);
+        const ScanMovement movement = movement_of_markers(*capture_, rig_, settings_.tracking);
+        if (movement.by != ScanMovement::By::markers || movement.moments < kFewMoments)
+            throw CheckFailedError(
+                "the markers are not seen in enough pictures of the scan to tell whether the patient "
+                "lay still",
+                "Turn the room's lamps up or the cameras' exposure, and scan again.");
+        motion_in_scan_mm_ = std::max(moved_at_the_end_mm(), movement.moved_mm);
         if (motion_in_scan_mm_ <= settings_.max_motion_in_scan_mm) break;
         if (scans_repeated_ + 1 >= settings_.max_scans)
             throw CheckFailedError(

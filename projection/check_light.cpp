@@ -68,7 +68,7 @@ double clear_depth(const LightDepth& depth, const CheckLightSettings& settings) 
 
 /// Side by side on one stroke, of which every `step`-th stretch is looked at.
 bool next_to(const SeenSegment& a, const SeenSegment& b, std::size_t step, const CheckLightSettings& settings) {
-    constexpr double kTogether = 1.6, kSameWay = 0.7;
+    constexpr double kTogether = 2.2, kSameWay = 0.7;  // of a dashed line each dash is a stretch, 10 mm from the next
     return !a.tick && !b.tick && a.item == b.item && a.sideways_in_ct.dot(b.sideways_in_ct) > kSameWay &&
            (a.p_in_ct - b.p_in_ct).norm() < kTogether * settings.segment_mm * static_cast<double>(step);
 }
@@ -185,6 +185,7 @@ void sum_up(LightCheck& check) {
         if (s.background > 0) backgrounds.push_back(s.background);
         if (!s.tick || s.seen) ++check.expected;
         if (!s.seen) continue;
+        if (!s.tick) ++check.lit_seen;
         sizes.push_back(std::abs(s.off_mm));
         sigmas.push_back(s.sigma_mm);
         brighter.push_back(s.brighter);
@@ -199,27 +200,32 @@ void sum_up(LightCheck& check) {
     check.told_whole = tells_whole(check.segments);
 }
 
-/// Of an item's stretches that were seen, in their order.
-double part_off_mm(const std::vector<const SeenSegment*>& seen, std::size_t step, const CheckLightSettings& settings) {
+/// Of an item's stretches, in their order. Beside one that lies aside another may lie so far aside that it is not
+/// found.
+double part_off_mm(const std::vector<const SeenSegment*>& stretches, std::size_t step,
+                   const CheckLightSettings& settings) {
     double most_mm = 0;
-    for (std::size_t k = 1; k < seen.size(); ++k)
-        if (const SeenSegment& a = *seen[k - 1], &b = *seen[k];
-            a.off_mm * b.off_mm > 0 && next_to(a, b, step, settings))
-            most_mm = std::max(most_mm, std::min(std::abs(a.off_mm), std::abs(b.off_mm)));
+    for (std::size_t k = 1; k < stretches.size(); ++k) {
+        const SeenSegment &a = *stretches[k - 1], &b = *stretches[k];
+        if (!next_to(a, b, step, settings) || (a.seen && b.seen && a.off_mm * b.off_mm < 0)) continue;
+        const double off_a = std::abs(a.off_mm), off_b = std::abs(b.off_mm);  // 0 where it is not seen
+        most_mm = std::max(most_mm, a.seen && b.seen ? std::min(off_a, off_b) : std::max(off_a, off_b));
+    }
     return most_mm;
 }
 
 void sum_up_items(LightCheck& check, std::size_t step, const CheckLightSettings& settings) {
     for (std::size_t i = 0; i < check.items.size(); ++i) {
-        std::vector<const SeenSegment*> seen;
+        std::vector<const SeenSegment*> seen, stretches;
         for (const SeenSegment& s : check.segments) {
             if (s.item != static_cast<int>(i)) continue;
+            if (!s.tick) stretches.push_back(&s);
             if (!s.tick || s.seen) ++check.items[i].segments;
             if (s.seen) seen.push_back(&s);
         }
         check.items[i].seen = static_cast<int>(seen.size());
         if (!seen.empty()) find_shift(seen, check.items[i]);
-        check.items[i].part_off_mm = part_off_mm(seen, step, settings);
+        check.items[i].part_off_mm = part_off_mm(stretches, step, settings);
     }
 }
 

@@ -57,8 +57,9 @@ struct ItemLight {
     Eigen::Vector3d shift_in_ct = Eigen::Vector3d::Zero();  ///< of the light along the skin, mm
     double off_mm = 0;                                      ///< its length, in the directions that the strokes tell
     double sigma_mm = 0;                                    ///< one standard deviation of it
-    /// The farthest that two stretches side by side lie beside their place, both at least and to the same side: a part
-    /// of the item may lie elsewhere than the whole of it, where the skin has risen under that part.
+    /// The farthest that two stretches side by side lie beside their place, both at least and to the same side, or one
+    /// beside another that is not found: a part of the item may lie elsewhere than the whole of it, where the skin has
+    /// risen under that part.
     double part_off_mm = 0;
     bool one_direction_only = false;  ///< a straight line tells nothing along itself
     /// Of the light above the drawing's skin as both cameras see it, mm: the skin there has risen since the scan, or
@@ -74,6 +75,7 @@ struct LightCheck {
     std::vector<ItemLight> items;  ///< as in the drawing
     std::vector<SeenSegment> segments;
     int lit = 0, expected = 0, seen = 0;  ///< segments: lit by the projector, of these to be seen by a camera, seen
+    int lit_seen = 0;                     ///< of `lit`, in which no tick counts
     double off_mm = 0;                    ///< 95 % of the segments' sides lie within this; 0 when nothing was seen
     double median_mm = 0;
     double most_mm = 0;  ///< a third of the sides lie beyond this: light as a whole, not what falls on a hand before it

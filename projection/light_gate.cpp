@@ -305,9 +305,9 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     ruling.details = {fmt::format("Measured by the cameras: 95 % of the light within {} mm of the plan.",
                                   said(std::max(0.1, last_->off_mm)))};
     constexpr double kMostOfIt = 0.75;
-    if (last_->seen < kMostOfIt * last_->lit)
+    if (last_->lit_seen < kMostOfIt * last_->lit)
         ruling.details.push_back(
-            fmt::format("They see about {:.0f} % of the light.", 10 * std::round(10. * last_->seen / last_->lit)));
+            fmt::format("They see about {:.0f} % of the light.", 10 * std::round(10. * last_->lit_seen / last_->lit)));
     return ruling;
 }
 

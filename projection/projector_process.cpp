@@ -46,9 +46,10 @@ private:
     std::vector<pid_t> processes_;
 };
 
-DeviceError cannot_be_ended() {
-    return {"Projector process", "it cannot be ended, and its light may still be on",
-            "Switch the projector off by hand. It hangs in the graphics driver: restart the computer."};
+UnendedProjector cannot_be_ended() {
+    return UnendedProjector(
+        "Projector process", "it cannot be ended, and its light may still be on",
+        "Switch the projector off by hand. Its process hangs in the graphics driver: restart the computer.");
 }
 
 /// Starts `PROGRAM projector-window --monitor M` with the two descriptors and nothing else of ours open, in a process
@@ -80,6 +81,10 @@ pid_t spawn(const std::filesystem::path& program, const std::string& monitor, in
 }
 
 }  // namespace
+
+bool a_projector_process_hangs() {
+    return Unended::all().any();
+}
 
 ProjectorProcess::ProjectorProcess(const std::string& monitor, const ProjectorProcessSettings& settings)
     : settings_(settings), monitor_(monitor) {
@@ -151,6 +156,7 @@ bool ProjectorProcess::end() noexcept {
     for (const Instant until = clock_.now() + kPatience; clock_.now() < until; std::this_thread::sleep_for(kPoll))
         if (waitpid(process, nullptr, WNOHANG) != 0) return true;
     Unended::all().add(process);
+    unended_ = true;
     return false;
 }
 
@@ -169,21 +175,25 @@ void ProjectorProcess::check() {
 }
 
 void ProjectorProcess::check_locked() {
-    constexpr const char* kRemedy =
-        "The light is dark. It can be started again; if this comes back, restart the computer.";
-    if (process_ < 0) throw DeviceError("Projector process", "it has ended", kRemedy);
+    if (process_ < 0) throw_ended("it has ended");
     if (mailbox_.state() == LightMailbox::State::failed) fail(mailbox_.problem(), mailbox_.remedy());
     if (waitpid(process_, nullptr, WNOHANG) == process_) {
         process_ = -1;
         end();
-        throw DeviceError("Projector process", "it was ended from outside, or crashed", kRemedy);
+        throw_ended("it was ended from outside, or crashed");
     }
     const Instant busy_since = mailbox_.busy_since();
     if (clock_.now() - mailbox_.alive_at() > settings_.silence_allowed ||
         (busy_since.count() > 0 && clock_.now() - busy_since > settings_.work_allowed)) {
-        if (!end()) throw cannot_be_ended();
-        throw DeviceError("Projector process", "it does not answer any more", kRemedy);
+        end();
+        throw_ended("it does not answer any more");
     }
+}
+
+void ProjectorProcess::throw_ended(const std::string& problem) {
+    if (unended_) throw cannot_be_ended();
+    throw DeviceError("Projector process", problem,
+                      "The light is dark. It can be started again; if this comes back, restart the computer.");
 }
 
 bool ProjectorProcess::shown_in_time(std::uint64_t number) {
@@ -220,7 +230,7 @@ void ProjectorProcess::go_dark() noexcept {
     try {
         shown_in_time(number);
     } catch (const std::exception&) {
-        // The process is ended then, and dark.
+        // The process is ended then, and dark; the next `check` says where it is not.
     }
 }
 

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <string>
 
+#include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
 #include "projection/light_mailbox.h"
 #include "registration/devices/projector.h"
@@ -22,6 +23,15 @@ struct ProjectorProcessSettings {
     Instant work_allowed = std::chrono::milliseconds(700);
     Instant start_allowed = std::chrono::seconds(10);
 };
+
+/// One that was killed and does not go, for it hangs in the graphics driver: its window may stay, lit.
+class UnendedProjector : public DeviceError {
+public:
+    using DeviceError::DeviceError;
+};
+
+/// Whether there is such a one, of this program, now.
+bool a_projector_process_hangs();
 
 /// The projector window in a process of its own, so that a program that hangs, is stopped or is killed cannot leave its
 /// light on a patient: each picture has its expiry, and all light a lease that this process must renew. All moments are
@@ -67,13 +77,15 @@ private:
     bool shown_in_time(std::uint64_t number);
     void wake();
     bool end() noexcept;  ///< false: killed, and not gone yet; its window may stay
+    [[noreturn]] void throw_ended(const std::string& problem);
 
     ProjectorProcessSettings settings_;
     SteadyClock clock_;
     LightMailbox mailbox_;
     std::mutex mutex_;
     pid_t process_ = -1;
-    int bell_ = -1;  ///< a byte here wakes the process; its end tells it that we are gone
+    bool unended_ = false;  ///< it was killed and did not go
+    int bell_ = -1;         ///< a byte here wakes the process; its end tells it that we are gone
     int width_ = 0, height_ = 0;
     std::string monitor_;
 };

@@ -102,19 +102,27 @@ PointCloud in_region(const PointCloud& cloud, const RegisterOptions& options, co
     return part;
 }
 
-/// Landmarks are pointed at on the skin. Of those in another frame (a half turn lies between LPS and RAS) the rms says
-/// nothing.
-void check_near_skin(const std::vector<PointPair>& pairs, const TriangleMesh& skin, const Path& file) {
-    constexpr double kFar_mm = 60;
+double median_to_skin_mm(const std::vector<PointPair>& pairs, const TriangleMesh& skin, const Eigen::Vector3d& signs) {
     std::vector<double> off_mm;
     for (const PointPair& pair : pairs) {
         double nearest = std::numeric_limits<double>::infinity();
-        for (const auto& vertex : skin.vertices_in_ct) nearest = std::min(nearest, (vertex - pair.in_ct).squaredNorm());
+        for (const auto& vertex : skin.vertices_in_ct)
+            nearest = std::min(nearest, (vertex - pair.in_ct.cwiseProduct(signs)).squaredNorm());
         off_mm.push_back(std::sqrt(nearest));
     }
-    if (off_mm.empty() || median(off_mm) <= kFar_mm) return;
+    return median(off_mm);
+}
+
+/// Landmarks are pointed at on the skin. Of those in another frame (a half turn lies between LPS and RAS) the rms says
+/// nothing.
+void check_near_skin(const std::vector<PointPair>& pairs, const TriangleMesh& skin, const Path& file) {
+    constexpr double kFar_mm = 150, kOff_mm = 15, kClearly = 1 / 3.;  // no place within a head is 150 mm off its skin
+    if (pairs.empty()) return;
+    const double off_mm = median_to_skin_mm(pairs, skin, {1, 1, 1}),
+                 turned_mm = median_to_skin_mm(pairs, skin, {-1, -1, 1});
+    if (off_mm <= kFar_mm && (off_mm <= kOff_mm || turned_mm > kClearly * off_mm)) return;
     throw InputError(
-        file, fmt::format("has landmarks that lie {:.0f} mm off the skin of the case (median)", median(off_mm)),
+        file, fmt::format("has landmarks that lie {:.0f} mm off the skin of the case (median)", off_mm),
         "Give ct_x, ct_y, ct_z in the frame of the CT, mm, and say in its first line whether that is LPS or RAS.");
 }
 

@@ -10,6 +10,10 @@ namespace {
 
 constexpr auto kPoll = std::chrono::milliseconds(4);
 
+ProjectorProblem problem_of(const Error& error) {
+    return {error.what(), error.remedy, dynamic_cast<const UnendedProjector*>(&error) != nullptr};
+}
+
 }  // namespace
 
 ProjectorKeeper::ProjectorKeeper(const std::string& monitor, const ProjectorKeeperSettings& settings)
@@ -42,7 +46,7 @@ Instant ProjectorKeeper::show(const RgbImage& picture, Instant valid_until) {
         return projector_->show(picture, valid_until);
     } catch (const Error& error) {
         lock.unlock();
-        lose({error.what(), error.remedy});
+        lose(problem_of(error));
         throw;
     }
 }
@@ -113,7 +117,7 @@ void ProjectorKeeper::run(const std::stop_token& stop) {
             lock.unlock();
             if (lost && clock_.now() - lost_at > settings_.retry_after) start_again();
         } catch (const Error& error) {
-            lose({error.what(), error.remedy});
+            lose(problem_of(error));
         } catch (const std::exception& error) {
             lose({error.what(), "Start the session again."});
         }

@@ -23,6 +23,7 @@ struct ProjectorKeeperSettings {
 /// Why there is no light to be had, with its remedy; empty while the projector answers.
 struct ProjectorProblem {
     std::string what, remedy;
+    bool may_be_lit = false;  ///< nobody can make it dark any more
     bool empty() const { return what.empty(); }
 };
 

@@ -3,7 +3,10 @@
 namespace planlight {
 
 void ProjectorWatch::put_into(OperatorModel& model) const {
-    if (!problem_.empty()) {
+    if (problem_.may_be_lit) {
+        model.status = {StatusKind::refused, "The projector's light may still be on.", {problem_.remedy}, {}};
+        model.light_on = true;
+    } else if (!problem_.empty()) {
         model.status = {StatusKind::dark,
                         "No projector: " + problem_.what + ".",
                         {problem_.remedy, model.may_light_item ? "It is looked for every second. The match is kept."

@@ -358,7 +358,7 @@ void GenicamCamera::run(const std::stop_token& stop) {
             if (!there) tell_silence();
         } catch (const std::exception& fault) {  // no memory for a picture, say
             frames_.fail({fmt::format("its pictures cannot be taken ({})", fault.what()),
-                          "Close other programs, or switch it off and on again."});
+                          "Close other programs, or switch the camera off and on again."});
         }
         reopen(stop);
     }

@@ -69,7 +69,9 @@ ScanMovement movement_of_markers(const ScanCapture& capture, const RigCalibratio
                                  const TrackingSettings& settings) {
     ScanMovement movement;
     if (capture.right.empty() || !present(rig.right_camera)) return movement;
-    PatientTracker tracker(rig, settings);
+    TrackingSettings in_half_light = settings;  // else markers that are followed under white are not seen here
+    in_half_light.markers.min_contrast /= 2;
+    PatientTracker tracker(rig, in_half_light);
     const std::vector<Look> looks = looks_of(capture, tracker);
     movement.moments = static_cast<int>(looks.size());
     movement.markers = static_cast<int>(tracker.markers().size());

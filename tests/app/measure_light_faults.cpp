@@ -6,10 +6,10 @@
 // Faults: offset (the picture 0.5 mm aside), late (20 ms, the head moving), slip (1 mm of one marker), projector and
 // camera (turned by 0.05 degrees about an axis square to its sight), covered (no light), window (another picture),
 // cap (all markers 2 mm along the skin), good
-// (none, for 20 s). Each begins after a second of good light, is looked at until 0.8 s after it was noticed, 2.5 s at
-// most, and taken away again. Every fourth draw is with the head moving at up to 20 mm/s, all of them where the light
-// is late or --moving is asked for. Times are the room's; from a frame to its picture it computes for 10 ms, or as long
-// as told.
+// (none, for 20 s; what the gate would have ruled then is counted: how many updates were not ALIGNED). Each begins
+// after a second of good light, is looked at until 0.8 s after it was noticed, 2.5 s at most, and taken away again.
+// Every fourth draw is with the head moving at up to 20 mm/s, all of them where the light is late or --moving is asked
+// for. Times are the room's; from a frame to its picture it computes for 10 ms, or as long as told.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,6 +26,7 @@
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
+#include "projection/light_gate.h"
 #include "registration/simulation/simulated_rig.h"
 #include "tests/support/test_data.h"
 
@@ -75,6 +76,8 @@ struct Outcome {
     std::optional<double> noticed_s;
     std::string named = "nothing", said;
     bool dark = false;
+    int updates = 0, not_green = 0;  ///< by a gate that was verified, from the second second on
+    std::string not_green_for;       ///< the last headline of these
 };
 
 const char* name_of(LightFault fault) {
@@ -126,8 +129,16 @@ public:
         const Instant began = rig_.clock().now();
         Outcome outcome;
         const Instant found_before = session_.found_delay();
+        LightGate gate;
+        gate.verify(began);
         while (rig_.clock().now() - began < (fault == "good" ? 20s : 2500ms)) {
             const auto update = session_.update();
+            const auto ruling = gate.step(update.frame.at, update.overlay.lit, update.light, update.causes,
+                                          update.pose.external_reliability_mm);
+            if (update.frame.at - began > 1s) {
+                ++outcome.updates;
+                if (ruling.trust != LightTrust::aligned) ++outcome.not_green, outcome.not_green_for = ruling.headline;
+            }
             const bool corrected = session_.found_delay() != found_before && outcome.named == "nothing";
             outcome.dark = outcome.dark || !update.overlay.lit;
             if (update.causes.empty() && !corrected && update.overlay.lit) continue;
@@ -241,7 +252,7 @@ private:
 };
 
 struct Sums {
-    int draws = 0, right = 0, noticed = 0, not_good_before = 0, dark = 0;
+    int draws = 0, right = 0, noticed = 0, not_good_before = 0, dark = 0, updates = 0, not_green = 0;
     std::vector<double> after_s;
     std::map<std::string, int> named;
 };
@@ -297,6 +308,12 @@ int main(int argc, char** argv) {
                 ++sum.draws;
                 sum.right += outcome->named == right;
                 sum.dark += outcome->dark;
+                sum.updates += outcome->updates;
+                sum.not_green += outcome->not_green;
+                if (fault == "good" && outcome->not_green > 0)
+                    fmt::print("room {} good {}: {} of {} updates not ALIGNED, the last for: {}\n", first + k,
+                               moving ? "moving" : "rest", outcome->not_green, outcome->updates,
+                               outcome->not_green_for);
                 ++sum.named[outcome->named];
                 if (outcome->noticed_s) {
                     ++sum.noticed;
@@ -322,6 +339,7 @@ int main(int argc, char** argv) {
         fmt::print("{} | {}{} | {} | {:.2f} / {:.2f} / {:.2f} | {} | {} | {}\n", fault, s.draws,
                    s.not_good_before > 0 ? fmt::format(" (and {} not begun)", s.not_good_before) : "", s.noticed,
                    after.median, after.p95, after.worst, s.right, s.dark, said);
+        if (fault == "good") fmt::print("good: {} of {} updates were not ALIGNED\n", s.not_green, s.updates);
     }
     return 0;
 }

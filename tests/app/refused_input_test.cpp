@@ -158,6 +158,12 @@ TEST_F(CommandsTest, WrongUsageGivesExitTwo) {
     EXPECT_EQ(run_planlight("prepare", root()).exit_code, 2);
     EXPECT_EQ(run_planlight("prepare " + patient() + " --plan " + plan() + " --voxel-mm nan --out n", root()).exit_code,
               2);
+    for (const char* level : {"nan", "inf", "-NaN"})
+        EXPECT_EQ(
+            run_planlight("prepare " + patient() + " --plan " + plan() + " --threshold " + level + " --out n", root())
+                .exit_code,
+            2)
+            << level;
     const auto frame = run_planlight("project case --rig r.json --registration m.json --frame 3 --out l.png", root());
     EXPECT_EQ(frame.exit_code, 2);
     EXPECT_NE(frame.err.find("--poses"), std::string::npos) << frame.err;

@@ -11,6 +11,7 @@ inline LightCheck seen_at(double off_mm, int seen = 40, int expected = 40) {
     LightCheck check;
     check.expected = expected;
     check.seen = seen;
+    check.lit_seen = seen;
     check.off_mm = check.most_mm = off_mm;
     check.sigma_mm = 0.05;
     check.told_whole = true;

@@ -151,6 +151,7 @@ TEST(LightGate, GreenSaysHowMuchOfTheLightIsSeen) {
     gate.verify(now);
     LightCheck half = seen_at(0.1, 21, 40);
     half.lit = 40;
+    half.lit_seen = 21;
     const auto ruling = after(gate, now, 10, half);
     EXPECT_EQ(ruling.trust, LightTrust::aligned);
     EXPECT_EQ(ruling.details.back(), "They see about 50 % of the light.");

@@ -86,7 +86,8 @@ TEST(SkinHeight, LightOnSkinThatHasRisenUnderOneItemLiesAsideByItsSlant) {
 
 /// The skin has risen under a part of a long line, by an injection or a retractor say: most of it lies right, and 95 %
 /// of all the light, but that part lies millimetres aside.
-TEST(SkinHeight, APartOfALineOnRisenSkinIsNoGreen) {
+/// `dashed`: the trace of a cut plane, else an osteotomy line.
+void expect_no_green_on_risen_part(bool dashed) {
     struct Cut {
         double longitude[2], latitude[2], at;  ///< from where to where, and the share of its way that has risen
     };
@@ -100,10 +101,23 @@ TEST(SkinHeight, APartOfALineOnRisenSkinIsNoGreen) {
         Plan plan;
         plan.boreholes = {hole("Hole 1", 0.1, 0.35), hole("Hole 2", 0.5, 0.3),  hole("Hole 3", 0.3, 0.65),
                           hole("Hole 4", -0.1, 0.6), hole("Hole 5", 0.7, 0.65), hole("Hole 6", 0.3, 0.05)};
-        OsteotomyLine line;
-        line.name = "Line";
-        for (int k = 0; k <= 16; ++k) line.points_in_ct.push_back(along(k / 16.0));
-        plan.osteotomy_lines.push_back(line);
+        std::vector<Vector3d> points;
+        for (int k = 0; k <= 16; ++k) points.push_back(along(k / 16.0));
+        if (dashed) {
+            CutPlane plane;
+            plane.name = "Line";
+            plane.origin_in_ct = points[8];
+            plane.normal_in_ct = points.front().cross(points.back()).normalized();
+            plane.first_axis_in_ct = (points.back() - points.front()).normalized();
+            plane.width_mm = (points.back() - points.front()).norm();
+            plane.height_mm = 60;
+            plan.cut_planes.push_back(plane);
+        } else {
+            OsteotomyLine line;
+            line.name = "Line";
+            line.points_in_ct = points;
+            plan.osteotomy_lines.push_back(line);
+        }
         const PlanDrawing drawing = drawing_of(plan);
         for (const double risen_mm : {0.0, 3.0, 4.0, 6.0}) {
             test::LitBall lit;
@@ -125,6 +139,14 @@ TEST(SkinHeight, APartOfALineOnRisenSkinIsNoGreen) {
             }
         }
     }
+}
+
+TEST(SkinHeight, APartOfALineOnRisenSkinIsNoGreen) {
+    expect_no_green_on_risen_part(false);
+}
+
+TEST(SkinHeight, APartOfACutPlanesTraceOnRisenSkinIsNoGreen) {
+    expect_no_green_on_risen_part(true);
 }
 
 /// What the projector lights, the gate knows of, though it is too steep to be measured.

@@ -125,6 +125,8 @@ TEST_F(ProjectorKeeperTest, AProcessThatCannotBeEndedIsSaidAndWaitedForByNobody)
         std::this_thread::sleep_for(2ms);
     }
     EXPECT_EQ(problem.what, "Projector process: it cannot be ended, and its light may still be on");
+    EXPECT_TRUE(problem.may_be_lit);
+    projector.go_dark();  // DARK cannot reach it either, and must not make it "dark"
     EXPECT_LT(longest, 2s);
     std::this_thread::sleep_for(100ms);
     EXPECT_EQ(projector.starts(), 1);

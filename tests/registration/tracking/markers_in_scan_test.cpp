@@ -23,7 +23,8 @@ std::vector<StripePattern> fast_columns() {
 /// A Gray code of columns on a head whose pose is `at(share)` when a share of the pictures is taken; stripes as seen
 /// from the left camera and the right one, hard over the markers too.
 ScanCapture capture_of(const RigCalibration& rig, const std::function<RigidTransform(double)>& at,
-                       bool with_stickers = true, const std::vector<StripePattern>& patterns = gray_columns(kBits)) {
+                       bool with_stickers = true, const std::vector<StripePattern>& patterns = gray_columns(kBits),
+                       const Look& look = {}) {
     ScanCapture capture;
     capture.stripes.width = 800;
     capture.stripes.height = 600;
@@ -34,7 +35,7 @@ ScanCapture capture_of(const RigCalibration& rig, const std::function<RigidTrans
         const double share = static_cast<double>(k) / static_cast<double>(capture.partial.size() - 1);
         auto stickers = moved(at(share) * RigidTransform(Eigen::Translation3d(head_centre())), stickers_on_head());
         if (!with_stickers) stickers.clear();
-        const StereoFrame lit = render_frame(rig, stickers, Look{}, {}, random);
+        const StereoFrame lit = render_frame(rig, stickers, look, {}, random);
         const auto under_stripes = [&](const GrayImage& picture) {
             GrayImage striped = picture;
             const auto kind = capture.partial[k].kind;
@@ -73,6 +74,25 @@ TEST(MarkersInScan, AHeadAtRestAndOneThatMoves) {
         EXPECT_NEAR(movement.moved_mm, 0.27, 0.06) << way.transpose();
         EXPECT_EQ(movement.from, "white");
     }
+}
+
+// Markers that are just followed under white have half that contrast in the pictures of the scan: a head that goes away
+// and comes back must be seen to.
+TEST(MarkersInScan, DimMarkersThatAreFollowedUnderWhiteAreSeenInTheScan) {
+    const RigCalibration rig = paper_rig();
+    Look dim;
+    dim.light = 0.1;
+    dim.noise = 1;
+    const auto away = [](double share) {
+        return RigidTransform(Eigen::Translation3d(share > 0.2 && share < 0.8 ? 2 : 0, 0, 0));
+    };
+    const ScanCapture capture = capture_of(rig, away, true, gray_columns(kBits), dim);
+    PatientTracker tracker(rig);
+    tracker.set_reference(StereoFrame{capture.left.front(), capture.right.front(), {}, {}, 0});
+    ASSERT_GE(tracker.markers().size(), 5u);
+    const ScanMovement movement = movement_of_markers(capture, rig);
+    EXPECT_EQ(movement.by, ScanMovement::By::markers);
+    EXPECT_NEAR(movement.moved_mm, 2, 0.3);
 }
 
 // Even light at both ends of the sequence, and none between: what moved from one to the other is measured.
