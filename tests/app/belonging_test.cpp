@@ -71,6 +71,7 @@ TEST(RigOfAMatch, AsksWhereTheProjectorSeemsToHaveZoomed) {
         zoomed = change;
         const RegistrationResult match = match_with(state);
         EXPECT_EQ(match.verdict, Verdict::ask);
+        ASSERT_FALSE(match.reasons.empty());
         EXPECT_NE(match.reasons.back().find("capture.json"), std::string::npos) << match.reasons.back();
     }
     zoomed = 0.002;
