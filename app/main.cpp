@@ -48,7 +48,7 @@ void open_standard_streams() {
 }
 
 /// "nan" is less than nothing and more than nothing: it passes every range.
-void refuse_no_numbers(CLI::App& command) {
+void refuse_nan(CLI::App& command) {
     const auto is_number = [](const std::string& text) {
         double number = 0;
         return CLI::detail::lexical_cast(text, number) && !std::isfinite(number) ? "not a number: " + text
@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
     for (const auto add : kCommands) {
         Run run = add(app);
         CLI::App* command = app.get_subcommands({}).back();
-        refuse_no_numbers(*command);
+        refuse_nan(*command);
         console_options(command, console);
         command->callback([&, command, run = std::move(run)] {
             chosen = [&, command, run] { return run_command(*command, run, console, line); };

@@ -15,7 +15,7 @@
 namespace planlight {
 namespace {
 
-constexpr int kFewMoments = 5;  ///< of a scan, in which the markers are seen
+constexpr int kLeastMoments = 5;  ///< of a scan, in which the markers are seen
 
 /// Where light of the plan lies: both ends and the middle of what is drawn, labels and marks aside, in patient.
 std::vector<Eigen::Vector3d> places_of_light(const PlanDrawing& drawing, const RigidTransform& patient_from_ct) {
@@ -114,10 +114,9 @@ void Session::make_scan(const std::function<void(int, int)>& progress) {
         capture_ = capture_scan(projector_, cameras_, clock_, stripes, progress);
         take_reference(*capture_);
         const ScanMovement movement = movement_of_markers(*capture_, rig_, settings_.tracking);
-        if (movement.by != ScanMovement::By::markers || movement.moments < kFewMoments)
+        if (movement.by != ScanMovement::By::markers || movement.moments < kLeastMoments)
             throw CheckFailedError(
-                "the markers are not seen in enough pictures of the scan to tell whether the patient "
-                "lay still",
+                "the markers are not seen in enough pictures of the scan to tell whether the patient lay still",
                 "Turn the room's lamps up or the cameras' exposure, and scan again.");
         motion_in_scan_mm_ = std::max(moved_at_the_end_mm(), movement.moved_mm);
         if (motion_in_scan_mm_ <= settings_.max_motion_in_scan_mm) break;

@@ -161,7 +161,7 @@ int run_cameras(const CamerasOptions& options) {
     const SteadyClock clock;
     RoomCameras cameras(room, clock);
     CameraWatch watch(cameras.pair().left(), cameras.pair().right(), clock, pair_settings(room));
-    print_to_user(fmt::format("Nobody may lie under the projector.\n"));
+    print_to_user("Nobody may lie under the projector.\n");
     if (!options.headless && !options.json) return show_page(options, room, cameras, watch, clock);
     std::unique_ptr<TestLight> light;
     if (options.show != "dark") {

@@ -63,7 +63,7 @@ ExaminationState examine(const DoctorOptions& options, const RoomFile& room) {
 
 int run_doctor(const DoctorOptions& options) {
     const RoomFile room = read_room(options.room);
-    print_to_user(fmt::format("Nobody may lie under the projector; lay anything light where the patient will be.\n"));
+    print_to_user("Nobody may lie under the projector; lay anything light where the patient will be.\n");
     const ExaminationState found = options.window ? show_doctor_page(options, room) : examine(options, room);
     print(options, found.lines, found.took_s);
     for (const DoctorLine& one : found.lines)

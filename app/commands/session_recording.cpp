@@ -144,7 +144,7 @@ RecordedSession recording_of_session(const SessionOptions& options, const Case& 
                                      const DrawingSettings& drawing) {
     const RecordMode mode = record_mode_of(options.record);
     if (mode == RecordMode::none) {
-        print_to_user(fmt::format("This session is not recorded, and there will be no report of it.\n"));
+        print_to_user("This session is not recorded, and there will be no report of it.\n");
         return {};
     }
     if (options.anonymous && mode == RecordMode::all)

@@ -61,8 +61,7 @@ int show_light(const ProjectorOptions& options) {
     if (options.configured_delay_ms >= 0) settings.light_delay = from_seconds(options.configured_delay_ms / 1e3);
     ProjectorWindow window(options.monitor, clock, false, settings);
     Pace pace(window, clock, options.frames_hz);
-    print_to_user(
-        fmt::format("Nobody may lie under the projector. Let the cameras run until it is dark; Ctrl-C ends it.\n"));
+    print_to_user("Nobody may lie under the projector. Let the cameras run until it is dark; Ctrl-C ends it.\n");
     ProgressBar bar;
     make_folder(options.keep);
     for (const std::string part : kLightParts) {

@@ -136,10 +136,17 @@ TEST_F(CommandsTest, AStandardErrorThatTakesNothingChangesNothing) {
         EXPECT_EQ(code_of(program + "plan /nowhere/plan.mrk.json" + nowhere), 3) << nowhere;
         EXPECT_EQ(code_of(program + "plan '" + plan() + "' >/dev/null" + nowhere), 0) << nowhere;
     }
-    const fs::path file = root() / "first-file.png";
-    EXPECT_EQ(code_of(program + "board --size A4 --out '" + file.string() + "' >/dev/null 2>&-"),
-              code_of(program + "board --size A4 --out '" + (root() / "second-file.png").string() + "' >/dev/null"));
-    EXPECT_EQ(read_text(file), read_text(root() / "second-file.png")) << "no message stands in it";
+    // The first file that is opened would take the number of standard error, and a log stays open.
+    const auto log_of = [&](const std::string& name, const std::string& where) {
+        EXPECT_EQ(
+            code_of(program + "plan '" + plan() + "' --log-file '" + (root() / name).string() + "' >/dev/null" + where),
+            0);
+        const std::string text = read_text(root() / name);
+        return std::count(text.begin(), text.end(), '\n');
+    };
+    const auto lines = log_of("closed.log", " 2>&-");
+    EXPECT_EQ(lines, log_of("open.log", " 2>/dev/null")) << "what is said to a person stands in the log";
+    EXPECT_GE(lines, 3) << "begin, a warning, end";
 }
 
 TEST_F(CommandsTest, ALogIsAddedToLogsOnly) {

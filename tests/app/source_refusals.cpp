@@ -333,14 +333,17 @@ std::vector<SourceRefusal> refusals_in_sources(const fs::path& root) {
                 files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     static const std::regex kThrow(
-        "\\b(InputError|DamagedFileError|DeviceError|CheckFailedError|DiskError|DiskRefusal|Error)\\(");
+        "\\b(InputError|DamagedFileError|DeviceError|UnendedProjector|CheckFailedError|DiskError|DiskRefusal|Error)"
+        "\\(");
     std::vector<SourceRefusal> found;
     for (const fs::path& file : files) {
         const std::string source = text_of(file);
         for (std::sregex_iterator it(source.begin(), source.end(), kThrow), end; it != end; ++it) {
             const auto at = static_cast<std::size_t>(it->position());
             if (at >= 4 && source.substr(at - 4, 4).find("::") != std::string::npos) continue;  // another library's
-            const std::string kind = (*it)[1] == "DiskRefusal" ? "DiskError" : (*it)[1].str();
+            const std::string kind = (*it)[1] == "DiskRefusal"        ? "DiskError"
+                                     : (*it)[1] == "UnendedProjector" ? "DeviceError"
+                                                                      : (*it)[1].str();
             std::size_t close = 0;
             const auto given = arguments(source, at + static_cast<std::size_t>(it->length()) - 1, close);
             const std::size_t problem = kind == "CheckFailedError" ? 0 : 1;

@@ -37,6 +37,18 @@ TEST(ProjectorWatch, ThatCameBackBetweenTwoLooksIsTheReasonOfTheDarknessUntilThe
     EXPECT_EQ(details(watch), dark().status.details);
 }
 
+/// In the one case in which somebody must reach for its switch the big word must not be DARK.
+TEST(ProjectorWatch, ThatCannotBeMadeDarkIsNotSaidToBe) {
+    ProjectorWatch watch(1);
+    EXPECT_TRUE(watch.look({"Projector process: it cannot be ended", "Switch the projector off by hand.", true}, 1));
+    OperatorModel model = dark();
+    watch.put_into(model);
+    EXPECT_EQ(model.status.kind, StatusKind::refused);
+    EXPECT_EQ(model.status.headline, "The projector's light may still be on.");
+    EXPECT_EQ(model.status.details, std::vector<std::string>{"Switch the projector off by hand."});
+    EXPECT_TRUE(model.light_on);
+}
+
 TEST(ProjectorWatch, ThatIsAwayStandsInPlaceOfTheStatusAndIsToldOfOnceItIsBack) {
     ProjectorWatch watch(1);
     EXPECT_TRUE(watch.look(kUnplugged, 1));

@@ -58,6 +58,13 @@ int hold(const std::string& monitor) {
 
 struct Holder {
     pid_t program = -1, projector = -1;
+
+    void end() const {
+        kill(program, SIGKILL);
+        waitpid(program, nullptr, 0);
+        kill(projector, SIGKILL);
+        std::this_thread::sleep_for(20ms);
+    }
 };
 
 /// Starts a program that holds light, and waits until it is lit.
@@ -118,10 +125,7 @@ void watch(const char* self, const Monitor& monitor, int rounds) {
                 times.push_back(*dark);
             else
                 ++never;
-            kill(holder.program, SIGKILL);
-            waitpid(holder.program, nullptr, 0);
-            kill(holder.projector, SIGKILL);
-            std::this_thread::sleep_for(20ms);
+            holder.end();
         }
         std::sort(times.begin(), times.end());
         const auto ms = [&](std::size_t i) { return 1000 * seconds(times.at(i)); };
@@ -157,10 +161,7 @@ void watch_hanging_driver(const char* self, const Monitor& monitor, int rounds, 
                 worst = std::max(worst, *dark);
             else
                 ++never;
-            kill(holder.program, SIGKILL);
-            waitpid(holder.program, nullptr, 0);
-            kill(holder.projector, SIGKILL);
-            std::this_thread::sleep_for(20ms);
+            holder.end();
         }
         expect(
             never == 0 && worst <= longest,
