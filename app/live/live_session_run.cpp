@@ -137,7 +137,9 @@ void LiveSession::device_lost(const Press& press, Session& session, const Device
     landmark_lit_from_.reset();
     if (following_) gate_.other_light(seen_at_);  // what was measured was before
     happened(following_ ? SessionHappening::skin_checked : SessionHappening::failed, [&](OperatorModel& m) {
-        if (press.action == OperatorAction::check_skin)  // the light comes back, and must not look as if it was checked
+        const auto of_check = [](const Press& p) { return p.action == OperatorAction::check_skin; };
+        // The light comes back, and must not look as if it was checked: one that still waits is given up, too.
+        if (of_check(press) || std::ranges::any_of(presses_, of_check))
             m.evidence.insert(m.evidence.begin(),
                               std::string("The skin was not checked: ") + lost.what() + "; check it again.");
         m.status = {StatusKind::dark,

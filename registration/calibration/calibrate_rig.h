@@ -27,7 +27,7 @@ struct CalibrationSettings {
     /// little.
     double max_worse_together = 1.6;
     double max_left_out = 0.2;      ///< share of corners or lit pixels that may disagree with the rest
-    double max_predicted_mm = 1.0;  ///< 95 % of the working volume
+    double max_predicted_mm = 1.0;  ///< 95 % of the working volume, of scanned points and of light sent to them
 };
 
 /// Why a calibration is refused, and what to do.

@@ -289,9 +289,12 @@ std::optional<Refusal> judge_rig(const std::vector<PoseObservation>& poses, cons
     for (const DeviceName name : kDevices)
         if (const auto& d = bundle.rig.device(name))
             if (auto refusal = judge_lens(*d, name)) return refusal;
-    if (calibration.volume && !(calibration.volume->p95_mm <= s.max_predicted_mm))
-        return Refusal{fmt::format("the poses do not determine the rig: points would be uncertain by {:.1f} mm",
-                                   calibration.volume->p95_mm),
+    if (!calibration.volume) return std::nullopt;
+    const VolumeError& volume = *calibration.volume;
+    if (!(volume.p95_mm <= s.max_predicted_mm) || !(volume.light_p95_mm <= s.max_predicted_mm))
+        return Refusal{fmt::format("the poses do not determine the rig: {} would be uncertain by {:.1f} mm",
+                                   volume.p95_mm <= s.max_predicted_mm ? "the light" : "points",
+                                   volume.p95_mm <= s.max_predicted_mm ? volume.light_p95_mm : volume.p95_mm),
                        "Capture more poses, tilted 15 to 40 degrees every way and at two distances."};
     return std::nullopt;
 }
@@ -311,6 +314,12 @@ std::vector<std::string> warnings_about(const std::vector<PoseObservation>& pose
         warnings.push_back(fmt::format("{} poses; 10 to 15 are better", count));
     if (const std::size_t lost = poses.size() - bundle.rig.poses())
         warnings.push_back(fmt::format("the board was not found in {} of {} poses", lost, poses.size()));
+    constexpr double kGood_mm = 0.3;
+    if (const auto& v = calibration.volume; v && std::max(v->p95_mm, v->light_p95_mm) > kGood_mm)
+        warnings.push_back(fmt::format(
+            "the poses leave the rig uncertain: 95 % of the points by up to {:.2f} mm, of the light by up to {:.2f} "
+            "mm; capture more poses, tilted every way and at two distances",
+            v->p95_mm, v->light_p95_mm));
     constexpr std::array kGoals_px{0.10, 0.10, 0.20};
     for (const DeviceName name : kDevices) {
         const auto d = static_cast<std::size_t>(name);

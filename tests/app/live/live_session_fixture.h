@@ -9,6 +9,7 @@
 
 #include "app/live/live_session.h"
 #include "app/live/simulated_room.h"
+#include "planning_io/types/error.h"
 #include "tests/app/played_session.h"
 #include "tests/app/room_with.h"
 
@@ -18,22 +19,24 @@ using namespace std::chrono_literals;
 using test::wait_for;
 
 /// Cameras that give no frame while they are held: the session's thread waits, and what is pressed waits with it.
+/// After that the first one may be lost.
 class HeldCameras final : public StereoCamera {
 public:
-    HeldCameras(StereoCamera& cameras, std::atomic<bool>& held, std::atomic<bool>& waits)
-        : cameras_(cameras), held_(held), waits_(waits) {}
+    HeldCameras(StereoCamera& cameras, std::atomic<bool>& held, std::atomic<bool>& waits, std::atomic<bool>& lost)
+        : cameras_(cameras), held_(held), waits_(waits), lost_(lost) {}
     StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override {
         return cameras_.grab(not_before, patience);
     }
     StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override {
         for (; held_; std::this_thread::sleep_for(1ms)) waits_ = true;
         waits_ = false;
+        if (lost_.exchange(false)) throw DeviceError("left camera", "no frame came", "Look at its cable.");
         return cameras_.newest(not_before, patience);
     }
 
 private:
     StereoCamera& cameras_;
-    std::atomic<bool>&held_, &waits_;
+    std::atomic<bool>&held_, &waits_, &lost_;
 };
 
 /// Counts the updates since a landmark was lit, and how often the gate forbade light before there was any.
@@ -59,7 +62,8 @@ protected:
         session = std::make_unique<LiveSession>(
             [this](const RoomProgress& progress) {
                 progress("The room of a test.", 0.25);
-                return std::make_unique<test::RoomWith<HeldCameras>>(made_room(), std::ref(held), std::ref(waits));
+                return std::make_unique<test::RoomWith<HeldCameras>>(made_room(), std::ref(held), std::ref(waits),
+                                                                     std::ref(lost));
             },
             test::example_case().prepared, drawing(), "/proc/planlight/matches", &counts);  // no disk keeps one there
     }
@@ -109,7 +113,7 @@ protected:
     }
 
     simulation::RoomSettings room;
-    std::atomic<bool> held{false}, waits{false};
+    std::atomic<bool> held{false}, waits{false}, lost{false};
     CountsUpdates counts;
     std::unique_ptr<LiveSession> session;
 };

@@ -171,6 +171,20 @@ TEST_F(LiveSessionTest, TrackAndAtOnceACheckOfTheSkinAreBothDone) {
     wait_for(*session, "light", [&](const OperatorModel&) { return session->projecting(); });
 }
 
+// A camera stumbles while the press still waits: the light comes back, and must not look as if the skin was checked.
+TEST_F(LiveSessionTest, ACheckOfTheSkinThatALostCameraOvertookIsSaidNotToHaveBeen) {
+    followed();
+    hold();
+    session->post(OperatorAction::check_skin);
+    lost = true;
+    held = false;
+    wait_for(*session, "the words", [](const OperatorModel& m) {
+        return !m.evidence.empty() &&
+               m.evidence.front() == "The skin was not checked: left camera: no frame came; check it again.";
+    });
+    wait_for(*session, "the light again", [](const OperatorModel& m) { return m.check_skin; });
+}
+
 // Stripes took the plan's place: what was measured before them is not of the light after them.
 TEST_F(LiveSessionTest, AfterACheckOfTheSkinTheLightIsMeasuredAnew) {
     followed();

@@ -63,6 +63,20 @@ TEST(CalibrateRigRefuses, PosesTiltedAllTheSameWay) {
     expect_refused(calibrated(room, room.observe()), "too similar");
 }
 
+/// Where scanned points lie may be known while nobody knows where light falls: it is the light that is uncertain then.
+TEST(CalibrateRigRefuses, LightThatThePosesDoNotPlace) {
+    test::IdealRoom room = test::ideal_room(4);
+    room.noise_px = 0.01, room.light_noise_px = 0.5;
+    const auto poses = room.observe();
+    const Calibration found = calibrated(room, poses);
+    ASSERT_FALSE(found.refusal) << found.refusal->reason;
+    ASSERT_GT(found.volume->light_p95_mm, found.volume->p95_mm);
+    CalibrationSettings strict;
+    strict.max_predicted_mm = (found.volume->light_p95_mm + found.volume->p95_mm) / 2;
+    expect_refused(calibrate_rig(poses, room.board, room.rig.projector.width, room.rig.projector.height, strict),
+                   "the light would be uncertain");
+}
+
 TEST(CalibrateRigRefuses, ABoardOfAnotherCount) {
     const test::IdealRoom room = test::ideal_room(8, 25, "charuco 10x7 25 mm");
     const BoardSpec wrong = parse_board("charuco 9x7 25 mm");
