@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "planning_io/types/even_direction.h"
+#include "projection/line_crossing.h"
 
 namespace planlight {
 namespace {
@@ -66,11 +67,13 @@ public:
         double end_mm = 0, lids_mm = 0, step_mm = 0, most = 0, leg_mm = 0, chord_mm = 0;
         std::size_t from = 0, to = 0;
         const std::size_t count = line.points_in_ct.size();
+        LineCrossing crossing;
         for (std::size_t i = 0; i + (line.closed && count > 2 ? 0 : 1) < count; ++i) {
             const auto a = skin.nearest(line.points_in_ct[i]), b = skin.nearest(line.points_in_ct[(i + 1) % count]);
             const SkinLine leg = join(skin, {a, b}, false, s.max_segment_mm);
             const LineOnSkin look = look_at(skin, leg);
             const double mm = length_mm(leg), straight_mm = (a.p_in_ct - b.p_in_ct).norm();
+            crossing.add(leg, i);
             end_mm += look.at_end * mm;
             lids_mm += look.on_lids * mm;
             step_mm = std::max(step_mm, look.widest_step_mm);
@@ -78,6 +81,11 @@ public:
             if (more > most) most = more, leg_mm = mm, chord_mm = straight_mm, from = i + 1, to = (i + 1) % count + 1;
         }
         check_ends(end_mm, lids_mm);
+        if (const auto legs = crossing.first(line.closed))
+            add("it crosses itself: its way from point {} to {} and that from {} to {} meet; are its points in the "
+                "right "
+                "order?",
+                legs->first + 1, (legs->first + 1) % count + 1, legs->second + 1, (legs->second + 1) % count + 1);
         if (step_mm > torn_mm(s))
             add("it jumps {:.1f} mm where the skin has a fold or a border, and is not on the skin there", step_mm);
         else if (most > kDetour_mm)

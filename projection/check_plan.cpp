@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "planning_io/types/error.h"
 #include "projection/check_items.h"
@@ -89,13 +90,17 @@ public:
         if (items_ == 0) verdict_.warnings.push_back("the plan is empty");
         if (!points_.empty()) verdict_.median_to_skin_mm = distance_quantile(points_, skin_, 0.5);
         if (items_ > 0) verdict_.share_far = static_cast<double>(far_items_) / items_;
-        if (items_ > 0 && verdict_.share_far > settings_.max_share_far)
-            verdict_.stops.push_back(
-                fmt::format("{} of {} items lie more than {:.0f} mm from the skin (median of all points {:.1f} mm)",
-                            far_items_, items_, settings_.near_skin_mm, verdict_.median_to_skin_mm));
+        constexpr int kFew = 4;  // of two items one may lie anywhere
+        if (items_ > 0 && (verdict_.share_far > settings_.max_share_far ||
+                           (items_ >= kFew && verdict_.share_far == settings_.max_share_far)))
+            verdict_.stops.push_back(fmt::format(
+                "{} of {} items lie more than {:.0f} mm from the skin{}", far_items_, items_, settings_.near_skin_mm,
+                points_.empty() ? "" : fmt::format(" (median of all points {:.1f} mm)", verdict_.median_to_skin_mm)));
         check_in_air("lines and boreholes", surface_points_, settings_.in_air_mm);
         check_in_air("entries", entries_, std::numeric_limits<double>::infinity());
         check_alternatives();
+        check_other_space();
+        check_under_something();
         return std::move(verdict_);
     }
 
@@ -164,9 +169,12 @@ private:
 
     void check_near_skin(const std::string& name, const std::vector<Vector3d>& points) {
         double far_mm = 0;
-        for (const auto& p : points) far_mm = std::max(far_mm, to_skin_mm(p));
+        const Vector3d* farthest = nullptr;
+        for (const auto& p : points)
+            if (const double mm = to_skin_mm(p); mm >= far_mm) far_mm = mm, farthest = &p;
         points_.insert(points_.end(), points.begin(), points.end());
         if (far_mm > settings_.near_skin_mm) ++far_items_;
+        if (farthest) depths_.emplace_back(name, in_the_body(skin_, *farthest) ? far_mm : 0);
         if (far_mm > settings_.too_far_mm)
             stop(name, "it is {:.1f} mm from the skin, too far to be drawn (at most {:.0f} mm)", far_mm,
                  settings_.too_far_mm);
@@ -283,6 +291,38 @@ private:
             verdict_.median_to_skin_mm, other->words, other->fit_mm));
     }
 
+    /// A few places come to lie evenly by chance; more do not.
+    void check_other_space() {
+        constexpr std::size_t kMany = 5;
+        const auto other = fits_in_other_space(points_, skin_);
+        if (!other) return;
+        const std::string said = fmt::format(
+            "the plan lies {:.1f} to {:.1f} mm under the skin (negative: over it); with (x, y, z) read as (-x, -y, z) "
+            "all of it would lie {:.1f} to {:.1f} mm under it, on the other side of the head: its coordinate system "
+            "seems to be the other one of LPS and RAS",
+            other->as_given.least_mm, other->as_given.most_mm, other->turned.least_mm, other->turned.most_mm);
+        (other->places >= kMany ? verdict_.stops : verdict_.warnings).push_back(said);
+    }
+
+    /// Most of the plan on the skin, an item deep under it: something lies on the skin there, or it was planned on
+    /// bone.
+    void check_under_something() {
+        constexpr double kOnSkin_mm = 2.5, kUnder_mm = 5, kMost = 0.6;
+        constexpr std::size_t kFewest = 3;
+        if (depths_.size() < kFewest || settings_.above_skin_mm >= settings_.too_far_mm) return;
+        double on_skin = 0;
+        for (const auto& [name, depth_mm] : depths_) on_skin += depth_mm < kOnSkin_mm;
+        if (on_skin < kMost * static_cast<double>(depths_.size())) return;
+        for (const auto& [name, depth_mm] : depths_)
+            if (depth_mm > kUnder_mm && depth_mm <= settings_.near_skin_mm)
+                verdict_.warnings.push_back(fmt::format(
+                    "{}: it lies {:.1f} mm under the skin, most of the plan within {:.1f} mm of it: unless it was "
+                    "planned on the bone, something lies on the skin there (a dressing, a pad, a marker), and the "
+                    "light "
+                    "is not drawn where it belongs",
+                    name.empty() ? "an item without a name" : name, depth_mm, kOnSkin_mm));
+    }
+
     const SkinSurface& skin_;
     const std::optional<VolumeBox>& volume_;
     const PlanCheckSettings& settings_;
@@ -290,6 +330,7 @@ private:
     PlanVerdict verdict_;
     int items_ = 0, far_items_ = 0;
     std::map<std::string, int> names_, structures_;
+    std::vector<std::pair<std::string, double>> depths_;  ///< of each item, the deepest of its points, mm
     std::vector<Vector3d> points_;
     std::vector<Vector3d> surface_points_, entries_;  ///< of lines and boreholes; of trajectories
     std::optional<MidPlane> mid_plane_;

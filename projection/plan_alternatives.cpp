@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "projection/check_items.h"
+
 namespace planlight {
 namespace {
 
@@ -37,7 +39,44 @@ double span_mm(const std::vector<Vector3d>& points) {
     return most;
 }
 
+/// Each 10 mm from those before it: neighbours on a line tell nothing new.
+std::vector<Vector3d> places_apart(const std::vector<Vector3d>& points) {
+    constexpr double kApart_mm = 10;
+    std::vector<Vector3d> places;
+    for (const Vector3d& p : points) {
+        if (places.size() == kMostPoints) break;
+        if (std::ranges::none_of(places, [&](const Vector3d& q) { return (p - q).norm() < kApart_mm; }))
+            places.push_back(p);
+    }
+    return places;
+}
+
+DepthRange depths_of(const std::vector<Vector3d>& points, const SkinSurface& skin) {
+    DepthRange range{1e9, -1e9};
+    for (const Vector3d& p : points) {
+        const double off_mm = (skin.nearest(p).p_in_ct - p).norm(), depth_mm = in_the_body(skin, p) ? off_mm : -off_mm;
+        range.least_mm = std::min(range.least_mm, depth_mm);
+        range.most_mm = std::max(range.most_mm, depth_mm);
+    }
+    return range;
+}
+
 }  // namespace
+
+std::optional<OtherSpace> fits_in_other_space(const std::vector<Vector3d>& points, const SkinSurface& skin) {
+    constexpr std::size_t kFewest = 3;
+    constexpr double kAcross_mm = 30, kEven_mm = 2.5, kTimes = 3, kFinest_mm = 1, kDeepest_mm = 15, kHighest_mm = 2;
+    std::vector<Vector3d> places = places_apart(points);
+    if (places.size() < kFewest || span_mm(places) < kAcross_mm) return std::nullopt;
+    OtherSpace found{depths_of(places, skin), {}, places.size()};
+    if (found.as_given.spread_mm() < kTimes * kFinest_mm) return std::nullopt;
+    for (Vector3d& p : places) p = Vector3d(-p.x(), -p.y(), p.z());
+    found.turned = depths_of(places, skin);
+    const bool even = found.turned.spread_mm() <= kEven_mm &&
+                      found.as_given.spread_mm() >= kTimes * std::max(found.turned.spread_mm(), kFinest_mm);
+    if (!even || found.turned.most_mm > kDeepest_mm || found.turned.least_mm < -kHighest_mm) return std::nullopt;
+    return found;
+}
 
 std::vector<Matrix3d> axis_permutations_and_flips() {
     std::vector<Matrix3d> all;

@@ -25,6 +25,23 @@ struct Alternative {
 std::optional<Alternative> best_alternative(const std::vector<Eigen::Vector3d>& points_on_skin_in_ct,
                                             const SkinSurface& skin, const Eigen::Vector3d& centre_in_ct);
 
+/// How deep points lie under the skin, mm; negative over it.
+struct DepthRange {
+    double least_mm = 0, most_mm = 0;
+    double spread_mm() const { return most_mm - least_mm; }
+};
+
+/// A plan that was taken for the other of LPS and RAS: half a turn about the axis from foot to head.
+struct OtherSpace {
+    DepthRange as_given, turned;
+    std::size_t places = 0;  ///< that lie 10 mm apart or more
+};
+
+/// Given where the plan lies unevenly deep, and half a turn about the third axis of ct would bring all of it to one
+/// depth: what was planned on skin or on bone lies evenly, wherever that is. Of three places or more, 30 mm across.
+std::optional<OtherSpace> fits_in_other_space(const std::vector<Eigen::Vector3d>& points_on_skin_in_ct,
+                                              const SkinSurface& skin);
+
 /// The share-th smallest of the distances from the skin, mm. `points` must not be empty.
 double distance_quantile(const std::vector<Eigen::Vector3d>& points, const SkinSurface& skin, double share);
 

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "planning_io/types/statistics.h"
-#include "segmentation/volume_sample.h"
+#include "planning_io/volume/volume_sample.h"
 
 namespace planlight {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "planning_io/types/statistics.h"
 #include "segmentation/segment_skin.h"
-#include "segmentation/volume_sample.h"
+#include "planning_io/volume/volume_sample.h"
 
 namespace planlight {
 namespace {

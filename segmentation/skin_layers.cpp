@@ -7,7 +7,7 @@
 
 #include "planning_io/types/statistics.h"
 #include "segmentation/triangle_area.h"
-#include "segmentation/volume_sample.h"
+#include "planning_io/volume/volume_sample.h"
 
 namespace planlight {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "segmentation/volume_sample.h"
+#include "planning_io/volume/volume_sample.h"
 
 namespace planlight {
 namespace {

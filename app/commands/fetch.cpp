@@ -55,6 +55,19 @@ const FoundSeries& only_one(const std::vector<FoundSeries>& found) {
                      "Give --series with the UID of one of them.");
 }
 
+/// An archive takes a date with hyphens in it for a range, and finds nothing.
+void check_date(const std::string& date) {
+    if (date.empty()) return;
+    const auto is_day = [](const std::string& text) {
+        return text.size() == 8 && text.find_first_not_of("0123456789") == std::string::npos;
+    };
+    const std::size_t hyphen = date.find('-');
+    const std::string from = date.substr(0, hyphen), to = hyphen == std::string::npos ? from : date.substr(hyphen + 1);
+    if ((is_day(from) && (to.empty() || is_day(to))) || (from.empty() && is_day(to))) return;
+    throw Error(ExitCode::usage, fmt::format("--date {} is no day and no range of days", date),
+                "Write the day as YYYYMMDD, or a range as YYYYMMDD-YYYYMMDD.");
+}
+
 int run_fetch(const FetchOptions& options) {
     const DicomPeer archive = archive_of(options.archive);
     if (options.check) {
@@ -66,6 +79,7 @@ int run_fetch(const FetchOptions& options) {
         return 0;
     }
     const SeriesQuery& q = options.query;
+    check_date(q.study_date);
     if ((q.patient_id + q.patient_name + q.accession_number + q.study_date + q.study_uid + q.series_uid).empty())
         throw Error(ExitCode::usage, "nothing says what is looked for",
                     "Give --patient-id, --patient-name, --accession, --date, --study or --series.");

@@ -90,9 +90,12 @@ public:
         : site(std::move(units)), skin_(patient.skin ? &*patient.skin : nullptr) {
         if (skin_) mid_plane_ = find_mid_plane(*skin_);
     }
-    /// `clearances`: to the plan's risk structures, of the item.
-    void add(const char* kind, const std::string& name, const std::string& what, const Eigen::Vector3d& at,
-             const Clearances& clearances) {
+    /// `points`: of the item on the skin, the first where it is said to lie; a line's side is that of its middle, and
+    /// where it runs over the middle of the head, from where to where. `clearances`: to the plan's risk structures, of
+    /// the item.
+    void add(const char* kind, const std::string& name, const std::string& what,
+             const std::vector<Eigen::Vector3d>& points, const Clearances& clearances) {
+        const Eigen::Vector3d& at = points.front();
         nlohmann::json item{{"kind", kind}, {"name", name}, {"what", what}, {"at_in_ct", {at.x(), at.y(), at.z()}}};
         item["risk"] = clearances_json(clearances);
         std::string where;
@@ -102,10 +105,22 @@ public:
             where = ", " + length_text(far, site) + " from the skin";
         }
         if (mid_plane_) {
-            const double left = mid_plane_->left_mm(at);
+            double left = 0, least = 1e9, most = -1e9;
+            for (const auto& p : points) {
+                const double here = mid_plane_->left_mm(p);
+                left += here / static_cast<double>(points.size());
+                least = std::min(least, here);
+                most = std::max(most, here);
+            }
             item["left_of_middle_mm"] = left;
-            where +=
-                fmt::format(", {} {} of the middle", length_text(std::abs(left), site), left > 0 ? "left" : "right");
+            const auto side = [&](double mm) {
+                return fmt::format("{} {}", length_text(std::abs(mm), site), mm > 0 ? "left" : "right");
+            };
+            constexpr double kOver_mm = 5;  // a line over the middle of the head lies on both sides of it
+            if (least < -kOver_mm && most > kOver_mm)
+                where += fmt::format(", from {} to {} of the middle", side(most), side(least));
+            else
+                where += fmt::format(", {} of the middle", side(left));
         }
         if (!clearances.empty()) where += ", " + clearance_in_words(clearances.front());
         items.push_back(std::move(item));
@@ -131,21 +146,21 @@ void list_plan(Listing& list, const Plan& plan, const std::vector<Clearances>& c
         list.add("osteotomy line", o.name,
                  fmt::format("{}, {} points, {} from point to point", o.closed ? "closed" : "open",
                              o.points_in_ct.size(), length_text(way, list.site)),
-                 o.points_in_ct.front(), clearances[n++]);
+                 o.points_in_ct, clearances[n++]);
     }
     for (const auto& b : plan.boreholes)
         list.add("borehole", b.name,
                  fmt::format("diameter {}, depth {}", length_text(b.diameter_mm, list.site),
                              length_text(b.depth_mm, list.site)),
-                 b.position_in_ct, clearances[n++]);
+                 {b.position_in_ct}, clearances[n++]);
     for (const auto& t : plan.trajectories)
         list.add("trajectory", t.name,
                  fmt::format("{}{}", length_text(t.length_mm(), list.site),
                              t.diameter_mm > 0 ? ", diameter " + length_text(t.diameter_mm, list.site) : ""),
-                 t.entry_in_ct, clearances[n++]);
+                 {t.entry_in_ct}, clearances[n++]);
     for (const auto& c : plan.cut_planes)
         list.add("cut plane", c.name, length_text(c.width_mm, list.site) + " x " + length_text(c.height_mm, list.site),
-                 c.origin_in_ct, clearances[n++]);
+                 {c.origin_in_ct}, clearances[n++]);
 }
 
 /// Tells of all that comes too near, and what cannot be measured or written.

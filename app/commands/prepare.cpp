@@ -18,6 +18,7 @@
 #include "app/report/thresholds_picture.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/plan/plan_file.h"
+#include "planning_io/surface/surface_fit.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/spare_memory.h"
 #include "planning_io/volume/read_volume.h"
@@ -94,7 +95,9 @@ Inputs read_inputs(const PrepareOptions& options) {
     if (!options.surface.empty()) {
         in.surface = read_surface(
             options.surface, {plan_settings(options.surface_frame, options.accept_frame, frame_uid), options.segment});
-        check_surface_fits(in.surface->mesh, in.volume, options.surface);
+        const SurfaceFit fit = check_surface_fits(in.surface->mesh, in.volume, options.surface);
+        if (std::string doubt = doubt_of(fit, options.surface); !doubt.empty())
+            in.surface->notes.push_back(std::move(doubt));
     }
     if (options.anonymous) make_anonymous(in, options);
     return in;

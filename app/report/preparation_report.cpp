@@ -134,18 +134,21 @@ ReportFacts facts_of_volume(const Preparation& done) {
                                        : ""}};
 }
 
-void add_slices(const PreparationPictures& pictures, std::vector<DocumentBlock>& blocks) {
+void add_slices(const PreparationPictures& pictures, bool on_given_surface, std::vector<DocumentBlock>& blocks) {
     blocks.push_back(DocumentHeading{"Through the middle of the head"});
     blocks.push_back(figures_of(pictures.middle_slices, 3));
     if (!pictures.plan_slices.empty()) {
         blocks.push_back(DocumentHeading{"Through the plan"});
         blocks.push_back(figures_of(pictures.plan_slices, 3));
     }
-    blocks.push_back(
-        DocumentText{"Green: the skin as found. Amber: lids over openings. Grey line: ends of the scan. Pink: the plan "
-                     "within 3 mm of the slice. Blue: risk structures. The green line must follow the skin wherever "
-                     "there is skin.",
-                     Tone::quiet});
+    blocks.push_back(DocumentText{
+        on_given_surface
+            ? "Green: the surface that was given. Pink: the plan within 3 mm of the slice. Blue: risk "
+              "structures. The green line must follow the bone, or what else the surface is of, everywhere."
+            : "Green: the skin as found. Amber: lids over openings. Grey line: ends of the scan. Pink: the "
+              "plan within 3 mm of the slice. Blue: risk structures. The green line must follow the skin "
+              "wherever there is skin.",
+        Tone::quiet});
 }
 
 /// Large things in front of the head were skin more often than they were a table.
@@ -315,7 +318,7 @@ PreparationReport preparation_report(const Preparation& done, const PlanDrawing&
     document.facts = facts_of_plan(done, operator_name);
     const ReportFacts of_volume = facts_of_volume(done);
     document.facts.insert(document.facts.end(), of_volume.begin(), of_volume.end());
-    add_slices(pictures, document.blocks);
+    add_slices(pictures, done.on_given_surface, document.blocks);
     document.blocks.push_back(NewSheet{});
     add_views(done, pictures, removed, document.blocks);
     add_plan(facts, document.blocks);

@@ -71,6 +71,7 @@ DicomSlice slice_of(vtkDICOMMetaData* meta, int frame, const std::string& name) 
         slice.intercept = numbers_at(meta, frame, DC::RescaleIntercept, 1)[0];
     }
     slice.thickness_mm = numbers_at(meta, frame, DC::SliceThickness, 1)[0];
+    slice.gantry_tilt_deg = numbers_at(meta, frame, DC::GantryDetectorTilt, 1)[0];
     slice.fat_shift_in_ct = fat_shift_of(meta, frame, slice);
     return slice;
 }

@@ -107,12 +107,28 @@ void copy_stored_values(vtkImageData* image, Volume& volume, const fs::path& pat
         volume.values[i] = static_cast<float>(scalars->GetComponent(static_cast<vtkIdType>(i), 0));
 }
 
+/// Slices that stand straight where the gantry was tilted: on some way through other systems the tilt is lost, and
+/// the head is sheared; where they were computed anew the mark alone is old.
+void note_lost_tilt(const std::vector<DicomSlice>& slices, Volume& volume) {
+    constexpr double kLeast_deg = 1, kApart_deg = 1;
+    if (slices.empty()) return;
+    const double said_deg = std::abs(slices[slices.size() / 2].gantry_tilt_deg),
+                 found_deg = tilt_of(volume.ct_from_voxel) * 180 / std::numbers::pi;
+    if (!(said_deg > kLeast_deg) || std::abs(said_deg - found_deg) <= kApart_deg) return;
+    volume.notes.push_back(fmt::format(
+        "the header says that the gantry was tilted by {:.1f} degrees, and the slices stand tilted by {:.1f}: if the "
+        "tilt was lost on the way, the head is sheared and everything on it in the wrong place; compare the head's "
+        "profile in the views, and give the series as the scanner made it",
+        said_deg, found_deg));
+}
+
 void note_geometry(const DicomSeries& series, Volume& volume) {
     if (const double tilt = tilt_of(volume.ct_from_voxel); tilt > kTilted)
         volume.notes.push_back(
             fmt::format("the gantry was tilted by {:.1f} degrees: the slices stay where they were, sheared",
                         tilt * 180 / std::numbers::pi));
     const auto slices = series.all_slices();
+    note_lost_tilt(slices, volume);
     if (std::any_of(series.files.begin(), series.files.end(), [](const DicomFile& f) { return f.was_lossy; }) ||
         std::any_of(slices.begin(), slices.end(),
                     [](const DicomSlice& s) { return transfer_syntax_of(s.transfer_syntax) == TransferSyntax::lossy; }))
@@ -310,7 +326,7 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted, Slice
     note_thickness(slices, volume);
     make_right_handed(volume);
     check_for_skin(volume, path);
-    note_slice_faults(volume);
+    note_slice_faults(volume, 2);  // within a slice none can be missing
     return volume;
 }
 

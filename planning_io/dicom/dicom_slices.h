@@ -30,6 +30,7 @@ struct DicomSlice {
     std::string defaced;    ///< how it says that the face was taken away
     std::string projected;  ///< how it says that it was made of several slices, as a MIP is
     double thickness_mm = kUnsaid;
+    double gantry_tilt_deg = kUnsaid;  ///< as the header says; the slices' places may say otherwise
     /// Of an MR: `Volume::fat_shift_in_ct`; zero when it does not say, or fat was suppressed.
     Eigen::Vector3d fat_shift_in_ct = Eigen::Vector3d::Zero();
 };

@@ -244,7 +244,8 @@ PlanImport import_plan(const fs::path& file_or_folder, const PlanImportSettings&
     if (!fs::is_directory(file_or_folder)) return looked_over(read_one(file_or_folder, settings), file_or_folder);
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(file_or_folder))
-        if (is_plan_name(entry.path())) files.push_back(entry.path());
+        if (is_plan_name(entry.path()) && !entry.path().filename().string().starts_with('.'))  // a Mac's `._plan`
+            files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     if (files.empty())
         throw InputError(file_or_folder, "holds no plan file",

@@ -23,7 +23,6 @@ using Eigen::Vector3d;
 constexpr std::size_t kFewestTriangles = 100;
 constexpr double kLeastAcross_mm = 50, kMostAcross_mm = 600;
 constexpr double kMostOddEdges = 1e-3;
-constexpr double kLeastInside = 0.95, kLeastEdge = 0.75, kAcrossEdge_mm = 1.5;
 
 struct Edge {
     std::int32_t low, high;
@@ -199,15 +198,6 @@ void describe(SurfaceFile& surface, const fs::path& file) {
     if (surface.pieces > 1) surface.notes.push_back(fmt::format("{} consists of {} pieces", name, surface.pieces));
 }
 
-/// The volume at a ct point, of the nearest voxel; NaN outside.
-double value_at(const Volume& volume, const Eigen::Affine3d& voxel_from_ct, const Vector3d& p) {
-    const Vector3d v = voxel_from_ct * p;
-    const Eigen::Vector3i i = v.array().round().cast<int>();
-    for (int axis = 0; axis < 3; ++axis)
-        if (i[axis] < 0 || i[axis] >= volume.size[static_cast<std::size_t>(axis)]) return NAN;
-    return static_cast<double>(volume.at(i.x(), i.y(), i.z()));
-}
-
 }  // namespace
 
 SurfaceFile surface_of(const Shape& welded, Space space, std::size_t degenerate, const fs::path& file) {
@@ -246,35 +236,6 @@ SurfaceFile read_surface(const fs::path& file, const SurfaceSettings& settings) 
     judge_surface(surface, file);
     describe(surface, file);
     return surface;
-}
-
-double check_surface_fits(const TriangleMesh& surface, const Volume& volume, const fs::path& file) {
-    const Eigen::Affine3d voxel_from_ct = volume.ct_from_voxel.inverse();
-    std::size_t inside = 0, edge = 0, compared = 0;
-    for (std::size_t v = 0; v < surface.vertices_in_ct.size(); ++v) {
-        const Vector3d &p = surface.vertices_in_ct[v], &n = surface.normals_in_ct[v];
-        inside += !std::isnan(value_at(volume, voxel_from_ct, p));
-        const double under = value_at(volume, voxel_from_ct, p - kAcrossEdge_mm * n),
-                     over = value_at(volume, voxel_from_ct, p + kAcrossEdge_mm * n);
-        if (std::isnan(under) || std::isnan(over)) continue;
-        ++compared;
-        edge += under > over;
-    }
-    const double share_inside = static_cast<double>(inside) / static_cast<double>(surface.vertices_in_ct.size());
-    if (share_inside < kLeastInside)
-        throw InputError(file,
-                         fmt::format("lies outside the volume with {:.0f} % of its points", 100 * (1 - share_inside)),
-                         "Check that it was made on this CT, and its coordinate system.");
-    const double share_edge = compared > 0 ? static_cast<double>(edge) / static_cast<double>(compared) : 0;
-    if (volume.modality != "CT") return NAN;
-    if (share_edge < kLeastEdge)
-        throw InputError(
-            file,
-            fmt::format("does not lie on an edge of this CT: only at {:.0f} % of its points it is brighter under "
-                        "the surface than over it",
-                        100 * share_edge),
-            "Check that it was made on this CT, and its coordinate system.");
-    return share_edge;
 }
 
 }  // namespace planlight

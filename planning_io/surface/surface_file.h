@@ -8,7 +8,6 @@
 #include "planning_io/plan/plan_import.h"
 #include "planning_io/surface/shape_file.h"
 #include "planning_io/types/triangle_mesh.h"
-#include "planning_io/types/volume.h"
 
 namespace planlight {
 
@@ -42,11 +41,5 @@ SurfaceFile surface_of(const Shape& welded, Space space, std::size_t degenerate,
 
 /// Looks at the edges of `surface.mesh`, turns it outwards and gives it normals. Throws InputError as `read_surface`.
 void judge_surface(SurfaceFile& surface, const std::filesystem::path& file);
-
-/// Checks that the surface belongs to the volume: at least 95 % of its vertices lie inside the box of the volume, and a
-/// CT has an edge there: at 75 % of the vertices at least it is brighter 1.5 mm under the surface than 1.5 mm over it.
-/// (Half of them are where a surface lies across everything, in another frame.) Gives that share; NaN where the volume
-/// is no CT and it says nothing. Throws InputError with the numbers.
-double check_surface_fits(const TriangleMesh& surface, const Volume& volume, const std::filesystem::path& file);
 
 }  // namespace planlight

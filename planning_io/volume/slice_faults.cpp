@@ -175,9 +175,10 @@ Exchange exchange_in(const SliceRow& row) {
 
 }  // namespace
 
-void note_slice_faults(Volume& volume) {
+void note_slice_faults(Volume& volume, std::optional<std::size_t> stacked) {
     constexpr double kMostApart = 2.5, kExchanged = 1.3;
     for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (stacked && axis != *stacked) continue;
         const SliceRow row = row_along(volume, axis);
         if (!is_of_a_scanner(row)) continue;
         if (const std::size_t empty = empty_in(row); empty > 0)

@@ -12,6 +12,7 @@
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/surface/surface_file.h"
+#include "planning_io/surface/surface_fit.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/invesalius_project.h"
 #include "planning_io/volume/read_volume.h"
@@ -200,7 +201,7 @@ TEST_F(SurfaceOnPatient, OnlyWhereItLiesInTheCtASurfaceIsTaken) {
     const Vector3d middle = box.ct_from_voxel * (Vector3d(box.size[0] - 1, box.size[1] - 1, box.size[2] - 1) / 2);
     const auto all = axis_permutations_and_flips();
     for (const SurfaceFile& surface : surfaces_) {
-        const double share = check_surface_fits(surface.mesh, volume_, "surface.ply");
+        const double share = check_surface_fits(surface.mesh, volume_, "surface.ply").share_darker;
         int refused = 0;
         for (std::size_t i = 1; i < all.size(); ++i) {
             TriangleMesh wrong = surface.mesh;
@@ -219,6 +220,41 @@ TEST_F(SurfaceOnPatient, OnlyWhereItLiesInTheCtASurfaceIsTaken) {
             surface.mesh.triangles.size(), 100 * share, refused, shift_mm);
         EXPECT_GT(share, 0.9);
         EXPECT_EQ(refused, 47);  // about the middle of the volume
+    }
+}
+
+// What lies somewhere between skin and bone, everywhere brighter under it than over it, is still not where the CT has
+// an edge: a surface that was moved, turned, scaled or mirrored since.
+TEST_F(SurfaceOnPatient, ASurfaceThatWasMovedALittleIsNotTaken) {
+    for (const SurfaceFile& surface : surfaces_) {
+        Vector3d low = surface.mesh.vertices_in_ct.front(), high = low;
+        for (const Vector3d& p : surface.mesh.vertices_in_ct) low = low.cwiseMin(p), high = high.cwiseMax(p);
+        const Vector3d middle = (low + high) / 2;
+        const auto moved = [&](const Eigen::Matrix3d& turn, const Vector3d& shift) {
+            TriangleMesh other = surface.mesh;
+            for (auto& p : other.vertices_in_ct) p = turn * (p - middle) + middle + shift;
+            for (auto& n : other.normals_in_ct) n = (turn * n).normalized();
+            return other;
+        };
+        const auto turned = [](double degrees, const Vector3d& axis) {
+            return Eigen::AngleAxisd(degrees * 3.14159265358979 / 180, axis).toRotationMatrix();
+        };
+        const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+        const SurfaceFit right = fit_of(surface.mesh, volume_);
+        std::printf("%zu triangles: %.2f on an edge, median %.1f mm; moved:", surface.mesh.triangles.size(),
+                    right.share_on_edge, right.median_mm);
+        EXPECT_TRUE(fits(surface.mesh));
+        EXPECT_EQ(doubt_of(right, "surface.ply"), "");
+        for (const TriangleMesh& wrong :
+             {moved(one, {5, 0, 0}), moved(one, {0, 5, 0}), moved(one, {0, 0, -8}), moved(0.95 * one, {0, 0, 0}),
+              moved(turned(8, Vector3d::UnitZ()), {0, 0, 0}), moved(turned(8, Vector3d::UnitX()), {0, 0, 0})}) {
+            std::printf(" %.2f", fit_of(wrong, volume_).share_on_edge);
+            EXPECT_FALSE(fits(wrong));
+        }
+        // A head is nearly its own mirror image: warned of.
+        const TriangleMesh mirrored = moved(Vector3d(-1, 1, 1).asDiagonal(), {0, 0, 0});
+        EXPECT_NE(doubt_of(fit_of(mirrored, volume_), "surface.ply").find("mirrored"), std::string::npos);
+        std::printf("\n");
     }
 }
 

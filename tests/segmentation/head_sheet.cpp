@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "segmentation/volume_sample.h"
+#include "planning_io/volume/volume_sample.h"
 
 namespace planlight::test {
 namespace {

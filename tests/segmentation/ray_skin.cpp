@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "planning_io/types/statistics.h"
-#include "segmentation/volume_sample.h"
+#include "planning_io/volume/volume_sample.h"
 
 namespace planlight::test {
 namespace {

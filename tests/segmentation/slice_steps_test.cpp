@@ -9,7 +9,7 @@
 #include "planning_io/volume/read_volume.h"
 #include "segmentation/skin_judgement.h"
 #include "segmentation/skin_shape.h"
-#include "segmentation/volume_sample.h"
+#include "planning_io/volume/volume_sample.h"
 #include "tests/support/test_data.h"
 
 namespace planlight::test {
