@@ -14,6 +14,7 @@
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/statistics.h"
+#include "registration/matching/register_patient.h"
 
 namespace planlight {
 namespace {
@@ -48,6 +49,24 @@ bool same(const CameraModel& a, const CameraModel& b) {
     constexpr double kAngle = 5e-5, kShift_mm = 0.1, kFocal = 2e-4;
     return angle_between(a.device_from_rig, b.device_from_rig) < kAngle &&
            (a.centre_in_rig() - b.centre_in_rig()).norm() < kShift_mm && std::abs(a.focal_x / b.focal_x - 1) < kFocal;
+}
+
+double projector_zoom(const RigState& rig) {
+    return rig.devices[static_cast<std::size_t>(RigDevice::projector)].focal_change;
+}
+
+bool was_zoomed(const RigState& rig) {
+    return rig.verdict == RigState::Verdict::corrected && std::abs(projector_zoom(rig)) > kMaxZoomed;
+}
+
+/// Another pose, or the mirrored head, fits nearly as well, or a pattern of another size: how uncertain this pose is
+/// tells nothing of how far off it may be.
+bool may_be_elsewhere(const RegistrationResult& found) {
+    static const RegistrationSettings limits;
+    if (found.verdict == Verdict::yes) return false;
+    const auto near = [](double ratio, double least) { return ratio > 0 && ratio < least; };
+    return near(found.runner_up_ratio, limits.min_runner_up_ratio) ||
+           near(found.mirror_ratio, limits.min_mirror_ratio) || (found.rig && was_zoomed(*found.rig));
 }
 
 }  // namespace
@@ -96,12 +115,11 @@ void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig,
     double hidden_mm = 0;
     for (const auto& p_in_ct : points_of(the_case.plan))
         hidden_mm = std::max(hidden_mm, hidden_light_mm(*rig, match.patient_from_ct * p_in_ct));
-    const double zoomed = rig->devices[static_cast<std::size_t>(RigDevice::projector)].focal_change;
-    if (rig->verdict == RigState::Verdict::corrected && std::abs(zoomed) > kMaxZoomed)
+    if (was_zoomed(*rig))
         ask(fmt::format(
             "The projector's focal length changed by {:.1f} % since the calibration, or the pictures are not "
             "of the pattern that capture.json says.",
-            100 * zoomed));
+            100 * projector_zoom(*rig)));
     if (hidden_mm > kMaxHidden_mm)
         ask(fmt::format(
             "The rig moved in a way that one scan cannot tell ({}): at a point of the plan it may hide {:.1f} mm.",
@@ -115,6 +133,7 @@ double light_by_scale_mm(const RegistrationResult& found, const Eigen::Vector3d&
 }
 
 double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct, double hidden_mm) {
+    if (may_be_elsewhere(found)) return std::numeric_limits<double>::infinity();
     // (std::hypot of three numbers makes "not a number" of an infinite one, and no maximum holds that.)
     const double pose_mm = found.covariance.known() ? predicted_error(found.covariance, p_in_ct).bound_95_mm
                                                     : std::numeric_limits<double>::infinity();
@@ -240,6 +259,60 @@ RigCalibration rig_of_light(const RegistrationResult& match, const RigCalibratio
             "Look at the light on landmarks and give --confirmed, or match a cloud of `planlight scan` (columns "
             "and rows, both cameras).");
     return match.rig && match.rig->rig.whole() ? match.rig->rig : rig;
+}
+
+namespace {
+
+/// Over how much of an item the scan saw something on the skin; empty where it is worth no word.
+std::optional<std::string> covered_in_words(const PlanDrawing& planned, std::size_t index,
+                                            const SkinDisplacement& skin) {
+    constexpr double kWorthAsking = 0.1;
+    double points = 0, covered = 0, most_mm = 0;
+    for (const Stroke& stroke : planned.strokes) {
+        if (stroke.item != static_cast<int>(index) || stroke.kind == StrokeKind::label) continue;
+        for (const auto& p : stroke.points_in_ct) {
+            ++points;
+            if (const auto mm = covered_by_mm(skin, p)) ++covered, most_mm = std::max(most_mm, *mm);
+        }
+    }
+    if (covered == 0 || covered < kWorthAsking * points) return std::nullopt;
+    return fmt::format(
+        "{}: over {:.0f} % of it the scan saw a surface up to {:.0f} mm outside the skin of the CT; the skin is "
+        "swollen "
+        "there, or something lies on it.",
+        planned.items[index].name, 100 * covered / points, most_mm);
+}
+
+/// The points of each item that lie on the skin, as `draw_plan` has them.
+std::vector<std::vector<Eigen::Vector3d>> points_on_skin(const Plan& plan) {
+    std::vector<std::vector<Eigen::Vector3d>> points;
+    for (const auto& line : plan.osteotomy_lines) points.push_back(line.points_in_ct);
+    for (const auto& hole : plan.boreholes) points.push_back({hole.position_in_ct});
+    for (const auto& trajectory : plan.trajectories) points.push_back({trajectory.entry_in_ct});
+    for (const auto& plane : plan.cut_planes) points.push_back({plane.origin_in_ct});
+    return points;
+}
+
+}  // namespace
+
+void judge_items(const Plan& plan, const PlanDrawing& planned, RegistrationResult& found) {
+    constexpr double kMost_mm = 1.5;
+    if (found.verdict == Verdict::no || !found.covariance.known()) return;
+    const auto ask = [&](const std::string& reason) {
+        found.verdict = Verdict::ask;
+        found.reasons.push_back(reason);
+    };
+    for (std::size_t i = 0; i < planned.items.size() && !found.skin.covered.empty(); ++i)
+        if (const auto covered = covered_in_words(planned, i, found.skin)) ask(*covered);
+    double worst_mm = 0;
+    std::size_t worst = 0;
+    const auto items = points_on_skin(plan);
+    for (std::size_t i = 0; i < std::min(items.size(), planned.items.size()); ++i)
+        for (const auto& p : items[i])
+            if (const double mm = predicted_light_mm(found, p); std::isfinite(mm) && mm > worst_mm)
+                worst_mm = mm, worst = i;
+    if (worst_mm > kMost_mm)
+        ask(fmt::format("{}: it may lie up to {:.1f} mm off (95 %).", planned.items[worst].name, worst_mm));
 }
 
 }  // namespace planlight

@@ -8,6 +8,7 @@
 #include "planning_io/case/case_folder.h"
 #include "planning_io/case/poses_file.h"
 #include "planning_io/types/registration_result.h"
+#include "projection/draw_plan.h"
 #include "registration/scan/scan_surface.h"
 
 // Files that belong together say so by hashes; joined wrongly they are refused (InputError, exit 3) with both names.
@@ -29,7 +30,8 @@ void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig,
 double light_by_scale_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct);
 
 /// How far off light may be at one point, 95 %, mm: by the registration, by what the scan could not tell of the rig,
-/// and by the scan's own size. Infinite where nothing is known of the registration's pose.
+/// and by the scan's own size. Infinite where nothing is known of the registration's pose, or where it is asked about
+/// because it may be another one, or the pictures of another pattern.
 double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct);
 /// The same where it is known how much the rig may hide there, mm.
 double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct, double hidden_mm);
@@ -60,5 +62,10 @@ PointCloud read_cloud_of(const RegistrationResult& match, const std::filesystem:
 /// The rig that the light of a match is to be drawn with: as the scan found it. Throws CheckFailedError where it may
 /// not be trusted, or where nothing is known of it and `confirmed` is not said.
 RigCalibration rig_of_light(const RegistrationResult& match, const RigCalibration& rig, bool confirmed);
+
+/// Looks at each item of the plan by what the scan tells of it: one of which a tenth or more is covered
+/// (`SkinDisplacement::covered`), or that may lie more than 1.5 mm off on the skin (95 %), is asked about, by name, and
+/// `found.verdict` is no `yes` any more. After `take_case_and_rig`.
+void judge_items(const Plan& plan, const PlanDrawing& planned, RegistrationResult& found);
 
 }  // namespace planlight

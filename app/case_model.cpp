@@ -177,7 +177,9 @@ std::vector<double> predicted_errors_mm(const Plan& plan, const RegistrationResu
     std::vector<double> errors;
     const auto add = [&](const std::vector<Eigen::Vector3d>& points_in_ct) {
         double worst = 0;
-        for (const auto& p : points_in_ct) worst = std::max(worst, predicted_light_mm(found, p));
+        for (const auto& p : points_in_ct)
+            worst = std::max(worst, covered_by_mm(found.skin, p) ? std::numeric_limits<double>::infinity()
+                                                                 : predicted_light_mm(found, p));
         errors.push_back(worst);
     };
     for (const auto& line : plan.osteotomy_lines) add(line.points_in_ct);

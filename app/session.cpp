@@ -60,7 +60,7 @@ CaseDrawing::CaseDrawing(const Case& the_case, const CaseDrawing& planned, const
     : skin(skin_as_scanned(planned.skin.mesh(), found)),
       settings(how),
       drawing(draw_plan(the_case.plan, planned.skin, skin, settings, clearances_in(planned.drawing))) {
-    warn_of_unscanned(found, drawing);
+    warn_of_unscanned(found, planned.drawing, drawing);
 }
 
 DrawingSettings lit_by(const RigCalibration& rig, const RigidTransform& rig_from_ct, DrawingSettings settings) {
@@ -210,6 +210,7 @@ void Session::match(const std::vector<PointPair>& landmarks) {
     registration_ = register_with_landmarks(scanned_->clean.kept, case_.lut, landmarks, settings);
     registration_->moved_in_scan_mm = motion_in_scan_mm_;
     take_case_and_rig(case_, rig_state_, *registration_);
+    judge_items(case_.plan, planned_.drawing, *registration_);
     if (registration_->verdict != Verdict::no) draw_on_skin_as_found();
     start_overlay();
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "projection/surface_walk.h"
@@ -25,22 +26,37 @@ SkinSurface skin_as_scanned(const TriangleMesh& ct_skin, const SkinDisplacementF
     return SkinSurface(std::move(moved));
 }
 
-void warn_of_unscanned(const SkinDisplacementField& field, PlanDrawing& drawing) {
+void warn_of_unscanned(const SkinDisplacementField& field, const PlanDrawing& planned, PlanDrawing& drawing) {
     constexpr double kWorthSaying = 0.1;
     if (!field.displacement().known()) return;
-    for (std::size_t index = 0; index < drawing.items.size(); ++index) {
-        std::size_t points = 0, unseen = 0;
-        double sigma_mm = 0;
-        for (const Stroke& stroke : drawing.strokes) {
+    for (std::size_t index = 0; index < std::min(planned.items.size(), drawing.items.size()); ++index) {
+        std::size_t points = 0, unseen = 0, covered = 0;
+        double sigma_mm = 0, cover_mm = 0;
+        for (const Stroke& stroke : planned.strokes) {
             if (stroke.item != static_cast<int>(index) || stroke.kind == StrokeKind::label) continue;
             for (const Vector3d& p : stroke.points_in_ct) {
                 const auto value = field.at(p);
                 ++points;
-                unseen += value.scanned ? 0 : 1;
-                if (!value.scanned) sigma_mm = std::max(sigma_mm, value.sigma_mm);
+                if (const auto mm = covered_by_mm(field.displacement(), p)) {
+                    ++covered;
+                    cover_mm = std::max(cover_mm, *mm);
+                } else if (!value.scanned) {
+                    ++unseen;
+                    sigma_mm = std::max(sigma_mm, value.sigma_mm);
+                }
             }
         }
-        if (unseen == 0 || static_cast<double>(unseen) < kWorthSaying * static_cast<double>(points)) continue;
+        const auto worth_saying = [&](std::size_t count) {
+            return count > 0 && static_cast<double>(count) >= kWorthSaying * static_cast<double>(points);
+        };
+        if (worth_saying(covered))
+            drawing.items[index].warnings.push_back(
+                fmt::format("{}: over {:.0f} % of it the scan saw a surface up to {:.0f} mm outside the skin of the "
+                            "CT; the skin is "
+                            "swollen there, or something lies on it",
+                            drawing.items[index].name,
+                            100. * static_cast<double>(covered) / static_cast<double>(points), cover_mm));
+        if (!worth_saying(unseen)) continue;
         DrawnItem& item = drawing.items[index];
         item.warnings.push_back(
             fmt::format("{}: {:.0f} % of it lies where the scan saw no skin; the skin there is taken to lie {:.1f} mm "

@@ -9,7 +9,9 @@ namespace planlight {
 /// same. Where nothing is known it is the CT's skin.
 SkinSurface skin_as_scanned(const TriangleMesh& ct_skin, const SkinDisplacementField& field);
 
-/// Warns of every item of which a tenth or more lies where the scan saw no skin: there the light may be aside.
-void warn_of_unscanned(const SkinDisplacementField& field, PlanDrawing& drawing);
+/// Warns of every item of which a tenth or more lies where the scan saw no skin, or something else on it: there the
+/// light may be aside.
+/// `planned`: the same plan as drawn on the CT's skin.
+void warn_of_unscanned(const SkinDisplacementField& field, const PlanDrawing& planned, PlanDrawing& drawing);
 
 }  // namespace planlight

@@ -252,11 +252,12 @@ int run_register(const RegisterOptions& options) {
     std::optional<RigState> rig;
     RegistrationResult result = match(options, the_case, cloud, rig);
     take_case_and_rig(the_case, rig, result);
+    const CaseDrawing drawing(the_case);
+    judge_items(the_case.plan, drawing.drawing, result);
     const bool keeps = keeps_what_was_there(result, options.out);
     if (!keeps) write_registration(result, options.out);
     if (!options.slicer_transform.empty() && result.verdict != Verdict::no)
         write_slicer_transform(result.patient_from_ct, options.slicer_transform);
-    const CaseDrawing drawing(the_case);
     if (!keeps) write_certificate(options, the_case, drawing, result, cloud);
     const nlohmann::json items = items_json(the_case, drawing, result);
     if (options.json)

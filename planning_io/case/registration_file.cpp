@@ -97,11 +97,18 @@ Json json_of(const SkinDisplacement& skin) {
         places.push_back({rounded(p.x(), 0.01), rounded(p.y(), 0.01), rounded(p.z(), 0.01), rounded(place.mm, 1e-4),
                           std::max(1e-4, rounded(place.sigma_mm, 1e-4))});
     }
-    return {{"apart_mm", skin.apart_mm},
-            {"offset_mm", skin.offset_mm},
-            {"spread_mm", skin.spread_mm},
-            {"alike_over_mm", skin.alike_over_mm},
-            {"places", places}};
+    Json covered = Json::array();
+    for (const auto& cover : skin.covered) {
+        const Eigen::Vector3d& p = cover.p_in_ct;
+        covered.push_back({rounded(p.x(), 0.01), rounded(p.y(), 0.01), rounded(p.z(), 0.01), rounded(cover.mm, 0.01)});
+    }
+    Json json{{"apart_mm", skin.apart_mm},
+              {"offset_mm", skin.offset_mm},
+              {"spread_mm", skin.spread_mm},
+              {"alike_over_mm", skin.alike_over_mm},
+              {"places", places}};
+    if (!covered.empty()) json["covered"] = covered;
+    return json;
 }
 
 SkinDisplacement skin_of(const JsonValue& json) {
@@ -123,6 +130,18 @@ SkinDisplacement skin_of(const JsonValue& json) {
         place.mm = row[3].number(-kMost_mm, kMost_mm);
         place.sigma_mm = row[4].number(kLeast_mm, kMost_mm);
         skin.places.push_back(place);
+    }
+    const auto covered = json.find("covered");
+    if (!covered) return skin;
+    if (covered->size() > 200000) covered->refuse("holds more places than any scan has");
+    for (std::size_t i = 0; i < covered->size(); ++i) {
+        const JsonValue row = (*covered)[i];
+        if (row.size() != 4) row.refuse("is not four numbers: x, y, z in ct, and how far outside it is covered, mm");
+        SkinDisplacement::Cover cover;
+        for (std::size_t k = 0; k < 3; ++k)
+            cover.p_in_ct[static_cast<Eigen::Index>(k)] = row[k].number(-kFar_mm, kFar_mm);
+        cover.mm = row[3].number(-kMost_mm, kMost_mm);
+        skin.covered.push_back(cover);
     }
     return skin;
 }

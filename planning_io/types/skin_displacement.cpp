@@ -37,6 +37,19 @@ double spread_of_skin_mm(const SkinDisplacement& displacement) {
     return std::sqrt(std::max(0.0, displacement.spread_mm * displacement.spread_mm - median(std::move(noise_mm2))));
 }
 
+std::optional<double> covered_by_mm(const SkinDisplacement& displacement, const Eigen::Vector3d& p_in_ct) {
+    const double reach_mm = 1.5 * displacement.apart_mm;
+    double nearest = reach_mm * reach_mm;
+    std::optional<double> mm;
+    for (const auto& cover : displacement.covered)
+        if (const double square = (cover.p_in_ct - p_in_ct).squaredNorm(); square < nearest)
+            nearest = square, mm = cover.mm;
+    if (!mm) return std::nullopt;
+    for (const auto& place : displacement.places)  // of a swelling there is a place where it is covered
+        if ((place.p_in_ct - p_in_ct).squaredNorm() < nearest) return std::nullopt;
+    return mm;
+}
+
 struct SkinDisplacementField::Parts {
     using Near = std::pair<double, const SkinDisplacement::Place*>;  // squared distance, mm^2
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace planlight {
@@ -16,13 +17,23 @@ struct SkinDisplacement {
         double mm = 0;
         double sigma_mm = 0;  ///< one standard deviation of `mm`
     };
-    std::vector<Place> places;  ///< about `apart_mm` apart over the scanned skin; empty: nothing is known of the skin
+    /// A place on the CT's skin over which the scan saw a surface that was not taken for skin.
+    struct Cover {
+        Eigen::Vector3d p_in_ct = Eigen::Vector3d::Zero();
+        double mm = 0;  ///< how far outside
+    };
+    std::vector<Cover> covered;  ///< about `apart_mm` apart; of a swelling there is a place as well
+    std::vector<Place> places;   ///< about `apart_mm` apart over the scanned skin; empty: nothing is known of the skin
     double apart_mm = 0;
     double offset_mm = 0;      ///< median of the places: taken where the scan saw no skin
     double spread_mm = 0;      ///< of the places about the offset, one standard deviation
     double alike_over_mm = 0;  ///< the displacement is alike over this length (correlation exp(-distance / length))
     bool known() const { return !places.empty(); }
 };
+
+/// How far outside the CT's skin the scan saw a surface over this point that was not taken for skin, mm; empty where
+/// there is none, or skin was found nearer to it.
+std::optional<double> covered_by_mm(const SkinDisplacement& displacement, const Eigen::Vector3d& p_in_ct);
 
 /// What of the spread is the skin's: without the noise of the scan, which is in each place's sigma. 0 when all may be
 /// noise.

@@ -257,10 +257,16 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
     Attempt whole = match_alone(surfaces, surfaces, lut, skin, settings, result);
     whole.result.initial_match_s = seconds_since(start) - whole.result.refine_s;
     const bool bare = whole.fine.fit.inlier_fraction() >= settings.among_cloth.bare_fraction;
-    if (whole.result.verdict == Verdict::yes || bare || !settings.look_among_cloth) return whole.result;
+    const auto with_covered_skin = [&](RegistrationResult& chosen) {
+        if (chosen.verdict != Verdict::no)
+            add_covered_skin(surfaces, lut, chosen.patient_from_ct.inverse(), chosen.skin);
+        return chosen;
+    };
+    if (whole.result.verdict == Verdict::yes || bare || !settings.look_among_cloth)
+        return with_covered_skin(whole.result);
     Attempt among = match_among_cloth(cloud, pieces, lut, skin, whole.match, settings, result);
     among.result.initial_match_s = seconds_since(start) - among.result.refine_s;
-    return better(among, whole) ? among.result : whole.result;
+    return with_covered_skin(better(among, whole) ? among.result : whole.result);
 }
 
 RegistrationResult register_patient_near(const PointCloud& cloud, const SkinLut& lut,

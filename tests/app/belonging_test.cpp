@@ -143,6 +143,57 @@ TEST(RigOfAMatch, AScanOfAnotherSizeIsInTheBound) {
     }
 }
 
+/// The plan's hole as it is drawn: a stroke of two points on the skin.
+PlanDrawing drawn_hole() {
+    PlanDrawing drawing;
+    drawing.items.emplace_back().name = "B1";
+    Stroke stroke{};
+    stroke.kind = StrokeKind::borehole;
+    stroke.item = 0;
+    stroke.points_in_ct = {{0, 0, 700}, {4, 0, 700}};
+    drawing.strokes.push_back(stroke);
+    return drawing;
+}
+
+TEST(ItemsOfAMatch, OneThatTheScanSawCoveredIsAskedAboutByName) {
+    RegistrationResult match = match_with(a_state(RigState::Verdict::as_calibrated));
+    match.skin.apart_mm = 4;
+    match.skin.places = {{{20, 0, 700}, 0, 0.1}};
+    match.skin.covered = {{{1, 0, 700}, 7}, {{60, 0, 700}, 9}};
+    judge_items(a_case().plan, drawn_hole(), match);
+    EXPECT_EQ(match.verdict, Verdict::ask);
+    ASSERT_EQ(match.reasons.size(), 1U);
+    EXPECT_NE(match.reasons[0].find("B1: over 100 % of it the scan saw a surface up to 7 mm outside"),
+              std::string::npos)
+        << match.reasons[0];
+    EXPECT_TRUE(std::isinf(predicted_errors_mm(a_case().plan, match).at(0)));
+
+    RegistrationResult elsewhere = match_with(a_state(RigState::Verdict::as_calibrated));
+    elsewhere.skin.apart_mm = 4;
+    elsewhere.skin.covered = {{{60, 0, 700}, 9}};
+    judge_items(a_case().plan, drawn_hole(), elsewhere);
+    EXPECT_EQ(elsewhere.verdict, Verdict::yes);
+}
+
+TEST(ItemsOfAMatch, OneThatMayLieFarOffIsAskedAbout) {
+    for (const auto& [sigma_mm, verdict] : {std::pair(0.3, Verdict::yes), {0.8, Verdict::ask}}) {
+        RegistrationResult match = match_with(a_state(RigState::Verdict::as_calibrated));
+        match.covariance.of_turn_and_shift.diagonal().tail<3>().setConstant(sigma_mm * sigma_mm);
+        judge_items(a_case().plan, drawn_hole(), match);
+        EXPECT_EQ(match.verdict, verdict) << predicted_light_mm(match, {0, 0, 700});
+    }
+}
+
+TEST(ItemsOfAMatch, WhereItMayBeAnotherPoseNoBoundIsGiven) {
+    RegistrationResult match = match_with(a_state(RigState::Verdict::as_calibrated));
+    match.mirror_ratio = 1.03;
+    EXPECT_TRUE(std::isfinite(predicted_light_mm(match, {0, 0, 700}))) << "landmarks made it a yes";
+    match.verdict = Verdict::ask;
+    EXPECT_TRUE(std::isinf(predicted_light_mm(match, {0, 0, 700})));
+    match.mirror_ratio = 1.5;
+    EXPECT_TRUE(std::isfinite(predicted_light_mm(match, {0, 0, 700})));
+}
+
 /// Not within 0.0 mm, which nothing could be.
 TEST(RigOfAMatch, APoseOfWhichNothingIsKnownMayBeOffByAnything) {
     RegistrationResult match = match_with(a_state(RigState::Verdict::as_calibrated));

@@ -120,11 +120,12 @@ Measured measure(const Room& of, const Volume& volume, const Case& the_case, con
         return measure_overlay(rig, plan, drawn, renderer, {}, at, shapes);
     };
     const CameraModel& projector = rig.calibration().projector;
-    measured.before = light_on(skin, draw_plan(plan, skin, drawing), projector, picture, false).places;
+    const PlanDrawing planned = draw_plan(plan, skin, drawing);
+    measured.before = light_on(skin, planned, projector, picture, false).places;
     const SkinDisplacementField field(found.skin);
     const SkinSurface skin_now = skin_as_scanned(skin.mesh(), field);
     PlanDrawing drawn = draw_plan(plan, skin, skin_now, drawing);
-    warn_of_unscanned(field, drawn);
+    warn_of_unscanned(field, planned, drawn);
     for (const auto& item : drawn.items)
         for (const auto& warning : item.warnings) measured.unscanned += warning.find("no skin") != std::string::npos;
     const OverlayErrors after = light_on(skin_now, drawn, projector, picture, true);

@@ -162,6 +162,44 @@ TEST_F(PlanOnPatient, PlansOnTheSkinAndOnTheBoneBelowItAreNotStopped) {
     }
 }
 
+/// Entries of electrodes 4 mm under the skin of one side, as on bone.
+Plan electrodes(const SkinSurface& skin, const Vector3d& towards, std::mt19937& random) {
+    std::uniform_real_distribution<double> unit(-1, 1);
+    Plan plan;
+    while (plan.trajectories.size() < 6) {
+        const Vector3d way = (towards + 0.6 * Vector3d(unit(random), unit(random), unit(random))).normalized();
+        const auto hit = skin.first_hit({300 * way, -way});
+        if (!hit || !skin.real_skin(*hit)) continue;
+        const Vector3d entry = hit->p_in_ct - (4 + 0.4 * unit(random)) * hit->normal_in_ct;
+        plan.trajectories.push_back({"E", entry, entry - 40 * way, 2, {}});
+    }
+    return plan;
+}
+
+// LPS taken for RAS is half a turn: the electrodes come to lie on the other side, each somewhere near the skin.
+TEST_F(PlanOnPatient, APlanInTheOtherCoordinateSystemIsStopped) {
+    TriangleMesh mesh = skin->mesh();
+    Vector3d low = mesh.vertices_in_ct.front(), high = low;
+    for (const Vector3d& p : mesh.vertices_in_ct) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    for (Vector3d& p : mesh.vertices_in_ct) p -= (low + high) / 2;  // as scanners have it: the head about the origin
+    const SkinSurface head(std::move(mesh));
+    std::mt19937 random(3);
+    int wrong = 0, right = 0;
+    constexpr int kPlans = 30;
+    for (int i = 0; i < kPlans; ++i) {
+        const Vector3d towards = i % 3 == 0   ? Vector3d(0.9, -0.2, 0.4)
+                                 : i % 3 == 1 ? Vector3d(-0.9, 0.1, 0.4)
+                                              : Vector3d(0.2, -0.8, 0.6);
+        const Plan given = electrodes(head, towards, random);
+        right += !check_plan(given, head).stops.empty();
+        wrong += !check_plan(moved(given, [](const Vector3d& p) { return Vector3d(-p.x(), -p.y(), p.z()); }), head)
+                      .stops.empty();
+    }
+    std::printf("of %d plans stopped: %d as they are, %d in the other system\n", kPlans, right, wrong);
+    EXPECT_EQ(right, 0);
+    EXPECT_GE(wrong, 27);
+}
+
 TEST_F(PlanOnPatient, MetresAndMicrometresAreStopped) {
     for (const double factor : {1e-3, 0.1, 10.0, 25.4, 1e3})
         EXPECT_THROW(refuse_stopped_plan(

@@ -56,6 +56,40 @@ TEST(CheckPlan, OneItemALittleOffIsWarnedOfWithItsNumber) {
     EXPECT_TRUE(said(verdict.warnings, "O2: it has 1 point(s)"));
 }
 
+// Points in a wrong order make a web of a craniotomy; in their order, or as a figure that only bends, they do not.
+TEST(CheckPlan, ALineThatCrossesItselfIsWarnedOf) {
+    const auto ring = [](const std::vector<int>& order) {
+        Plan plan = good_plan();
+        OsteotomyLine line{"O2", {}, true, {}};
+        for (const int i : order) {
+            const double angle = i * 2 * 3.14159265358979 / static_cast<double>(order.size());
+            line.points_in_ct.push_back(on_ball(0.3 + 0.35 * std::cos(angle), 0.35 * std::sin(angle)));
+        }
+        plan.osteotomy_lines.push_back(line);
+        return check_plan(plan, ball());
+    };
+    EXPECT_FALSE(said(ring({0, 1, 2, 3, 4, 5, 6, 7}).warnings, "crosses itself"));
+    EXPECT_TRUE(said(ring({0, 1, 3, 2, 4, 5, 6, 7}).warnings,
+                     "O2: it crosses itself: its way from point 2 to 3 and that from 4 to 5 meet"));
+    EXPECT_TRUE(said(ring({0, 4, 2, 6, 1, 5, 3, 7}).warnings, "crosses itself"));
+    Plan eight = good_plan();
+    eight.osteotomy_lines.push_back(
+        {"O3", {on_ball(0, 0), on_ball(0.6, 0.6), on_ball(0.6, 0), on_ball(0, 0.6)}, false, {}});
+    EXPECT_TRUE(said(check_plan(eight, ball()).warnings, "O3: it crosses itself"));
+    eight.osteotomy_lines.back().points_in_ct = {on_ball(0, 0), on_ball(0, 0.6), on_ball(0.6, 0.6), on_ball(0.6, 0)};
+    EXPECT_FALSE(said(check_plan(eight, ball()).warnings, "crosses itself"));
+}
+
+// Most of the plan on the skin and one hole well under it: a dressing lies there, or the hole was planned on bone.
+TEST(CheckPlan, AnItemUnderWhatLiesOnTheSkinIsWarnedOf) {
+    Plan plan = good_plan();
+    plan.boreholes[0].position_in_ct *= (kRadius_mm - 7) / kRadius_mm;
+    EXPECT_TRUE(said(check_plan(plan, ball()).warnings, "B1: it lies 7.0 mm under the skin, most of the plan"));
+    EXPECT_FALSE(said(check_plan(plan, ball(), {}, plan_checks_on(true)).warnings, "under the skin, most"));
+    for (auto& p : plan.osteotomy_lines[0].points_in_ct) p *= (kRadius_mm - 7) / kRadius_mm;  // on bone as well
+    EXPECT_FALSE(said(check_plan(plan, ball()).warnings, "under the skin, most"));
+}
+
 TEST(CheckPlan, WhatMustNotBeShownIsStoppedByNameAndNumber) {
     const auto stops_of = [](const std::function<void(Plan&)>& spoil) {
         Plan plan = good_plan();

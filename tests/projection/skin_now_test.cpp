@@ -155,7 +155,7 @@ TEST(SkinNow, WhatTheScanDidNotSeeIsSaid) {
     plan.boreholes.push_back({"seen", on_ball(0, 0), {}, 7, 5, {}});
     plan.boreholes.push_back({"unseen", on_ball(2.5, 0), {}, 7, 5, {}});
     PlanDrawing drawing = draw_plan(plan, ball(), now, without_labels());
-    warn_of_unscanned(field, drawing);
+    warn_of_unscanned(field, drawing, drawing);
     EXPECT_TRUE(drawing.items[0].warnings.empty());
     ASSERT_EQ(drawing.items[1].warnings.size(), 1u);
     EXPECT_NE(drawing.items[1].warnings[0].find("unseen: 100 % of it lies where the scan saw no skin"),

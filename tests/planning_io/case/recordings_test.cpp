@@ -63,6 +63,7 @@ TEST(Recordings, CaptureFramesRegistrationAndPosesReadBack) {
     result.skin.apart_mm = 4, result.skin.alike_over_mm = 25;
     result.skin.offset_mm = -0.35, result.skin.spread_mm = 0.08;
     result.skin.places = {{{10.126, -20, 30}, -0.31254, 0.02}, {{14, -20, 30.5}, -0.4, 0.05}};
+    result.skin.covered = {{{18, -20, 31}, 7.25}};
     write_registration(result, folder.path() / "registration.json");
     const auto result_back = read_registration(folder.path() / "registration.json");
     EXPECT_EQ(result_back.verdict, Verdict::ask);
@@ -86,6 +87,9 @@ TEST(Recordings, CaptureFramesRegistrationAndPosesReadBack) {
     EXPECT_LT((result_back.skin.places[0].p_in_ct - result.skin.places[0].p_in_ct).norm(), 0.01);
     EXPECT_NEAR(result_back.skin.places[0].mm, -0.31254, 1e-4);
     EXPECT_EQ(result_back.skin.places[1].sigma_mm, 0.05);
+    ASSERT_EQ(result_back.skin.covered.size(), 1u);
+    EXPECT_EQ(result_back.skin.covered[0].p_in_ct, Eigen::Vector3d(18, -20, 31));
+    EXPECT_EQ(result_back.skin.covered[0].mm, 7.25);
 
     result.covariance.of_turn_and_shift.diagonal().setConstant(std::numeric_limits<double>::infinity());
     write_registration(result, folder.path() / "not_known.json");

@@ -48,6 +48,24 @@ TEST(DicomSlices, AnEvenStackInAnyOrderIsAVolumeAndATiltIsKept) {
     EXPECT_LT((ct_from_voxel * Vector3d(10, 20, 5) - Vector3d(-100 + 5, -120 + 12 + 2, 7 + 7.5)).norm(), 1e-9);
 }
 
+// The gantry's angle stands in the header, and in the slices' places unless it was lost on the way.
+TEST(DicomSeries, ATiltThatTheHeaderSaysAndTheSlicesDoNotIsSaid) {
+    const test::TemporaryFolder folder;
+    for (const auto& [tilt_deg, said] : {std::pair{"0", false}, {"0.5", false}, {"-8", true}, {"8", true}}) {
+        const fs::path into = folder.path() / tilt_deg;
+        fs::create_directories(into);
+        auto objects = test::synthetic_series({});  // they stand straight
+        for (auto& object : objects) object.text(0x00181120, "DS", tilt_deg);
+        test::write_series(objects, into);
+        std::string notes;
+        for (const std::string& note : read_volume(into).notes) notes += note;
+        EXPECT_EQ(
+            notes.find("the gantry was tilted by 8.0 degrees, and the slices stand tilted by 0.0") != std::string::npos,
+            said)
+            << tilt_deg << ": " << notes;
+    }
+}
+
 // As a viewer's "thick slab" makes them: each is a mean over what lies around it.
 TEST(DicomSeries, SlicesThatOverlapByMoreThanHalfBlurTheSkin) {
     const test::TemporaryFolder folder;

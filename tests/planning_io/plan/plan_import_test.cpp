@@ -248,6 +248,8 @@ TEST_F(PlanImportTest, AFolderIsOnePlanOfAllItsFiles) {
     write("b.csv", "# SPACE=LPS\nname,ex,ey,ez,tx,ty,tz\nA,1,2,3,4,5,6\n");
     write("notes.txt", "not a plan");
     write("old.acsv", "point|1|2|3|1|1");
+    write("._a.fcsv", "what a Mac keeps beside a file");
+    write(".hidden.csv", "# SPACE=LPS\nname,ex,ey,ez,tx,ty,tz\nB,1,2,3,4,5,6\n");
     std::filesystem::create_directory(folder_.path() / "more");
     const PlanImport read = import_plan(folder_.path());
     EXPECT_EQ(read.plan.boreholes.size(), 1U);
