@@ -150,7 +150,10 @@ SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSett
         std::vector<std::vector<Fringe>> fringes{fringes_of(samples, direction.phase)};
         for (const auto& phases : direction.further) fringes.push_back(fringes_of(samples, phases));
         check_pairs(samples, direction, check);
-        if (!direction.phase.empty()) check_fringes(samples, direction.phase, fringes[0], check);
+        if (!direction.phase.empty()) {
+            check_fringes(samples, direction.phase, fringes[0], check);
+            if (check.problems.empty()) check_doubled(samples, direction.phase, fringes[0], check);
+        }
         for (std::size_t k = 0; k < direction.further.size(); ++k)
             check_fringes(samples, direction.further[k], fringes[k + 1], check);
         check_frequencies(samples, direction, fringes, check);

@@ -88,6 +88,49 @@ std::vector<Fringe> fringes_of(const Samples& s, const std::vector<std::size_t>&
     return fringes;
 }
 
+namespace {
+
+/// Of a surface narrower than a fringe the light changes more from one picture to the next than to another.
+bool all_shifts_are_there(const std::vector<Fringe>& fringes, std::size_t bins) {
+    constexpr double kOfEvenly = 0.5;
+    std::vector<double> found(bins, 0);
+    for (const Fringe& fringe : fringes) {
+        const double turn = fringe.phase / (2 * std::numbers::pi);
+        ++found[std::min(bins - 1, static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(bins)))];
+    }
+    const double evenly = static_cast<double>(fringes.size()) / static_cast<double>(bins);
+    return std::all_of(found.begin(), found.end(), [&](double count) { return count > kOfEvenly * evenly; });
+}
+
+/// Mean difference of each fringe picture to the one before it, from the second on, over the lit pixels, grey.
+std::vector<double> steps_of(const Samples& s, const std::vector<std::size_t>& phases) {
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < phases.size(); ++k) {
+        double sum = 0;
+        for (std::size_t i = 0; i < s.lit; ++i)
+            sum += std::abs(int{s.here[phases[k]][i]} - int{s.here[phases[k - 1]][i]});
+        steps.push_back(sum / std::max<double>(1, static_cast<double>(s.lit)));
+    }
+    return steps;
+}
+
+}  // namespace
+
+void check_doubled(const Samples& s, const std::vector<std::size_t>& phases, const std::vector<Fringe>& fringes,
+                   SequenceCheck& check) {
+    constexpr double kOfUsual = 0.5;
+    if (phases.size() < 5 || s.lit < kEnough || !all_shifts_are_there(fringes, phases.size())) return;
+    const std::vector<double> steps = steps_of(s, phases);
+    std::vector<double> sorted = steps;
+    std::sort(sorted.begin(), sorted.end());
+    const double usual = sorted[sorted.size() / 2];
+    for (std::size_t k = 0; k < steps.size(); ++k)
+        if (steps[k] < kOfUsual * usual)
+            check.problems.push_back({phases[k + 1],
+                                      fmt::format("{} looks like {}", s.name(phases[k + 1]), s.name(phases[k])), 1,
+                                      SequenceProblem::Cause::timing});
+}
+
 void check_fringes(const Samples& s, const std::vector<std::size_t>& phases, const std::vector<Fringe>& fringes,
                    SequenceCheck& check) {
     if (phases.size() < 5) return;  // too few for anything to be left over

@@ -19,6 +19,11 @@ struct Fringe {
 /// The fringes at all samples; empty where there are none.
 std::vector<Fringe> fringes_of(const Samples& samples, const std::vector<std::size_t>& phases);
 
+/// A fringe picture that stands in the place of the next one: over a whole fringe each differs from the one before it
+/// as much as any other does. Finer than `check_fringes`, which asks pixel by pixel, where noise hides two of eight.
+void check_doubled(const Samples& samples, const std::vector<std::size_t>& phases, const std::vector<Fringe>& fringes,
+                   SequenceCheck& check);
+
 /// Frames that no fringe and its gamma can make.
 void check_fringes(const Samples& samples, const std::vector<std::size_t>& phases, const std::vector<Fringe>& fringes,
                    SequenceCheck& check);

@@ -142,6 +142,27 @@ TEST(CheckSequence, ThePictureIsNamed) {
         << said(check);
 }
 
+// Noise hides pixel by pixel what two of eight fringe pictures lack; over the whole surface it does not.
+TEST(CheckSequence, AFringePictureThatIsThereTwiceIsNamedWhateverTheNoise) {
+    const auto sequence = stripe_sequence(head().stripes);
+    for (const double sigma : {0.5, 3.0, 6.0}) {
+        for (const auto* s : {&head(), &bright_room()}) {
+            const SequenceCheck sound = check_sequence(with_noise(s->frames, sigma, 5), s->stripes);
+            EXPECT_TRUE(sound.problems.empty()) << "noise " << sigma << ": " << said(sound);
+        }
+        for (std::size_t k = 1; k < sequence.size(); ++k) {
+            if (sequence[k].name.find("phase") == std::string::npos ||
+                sequence[k - 1].name.find("phase") == std::string::npos ||
+                sequence[k].along_rows != sequence[k - 1].along_rows)
+                continue;
+            std::vector<GrayImage> frames = head().frames;
+            frames[k] = frames[k - 1];
+            const SequenceCheck check = check_sequence(with_noise(frames, sigma, 3), head().stripes);
+            EXPECT_TRUE(check.checked && !check.problems.empty()) << sequence[k].name << ", noise " << sigma;
+        }
+    }
+}
+
 /// Light that comes later than is waited for: the first picture is dark still, each of the others is the one before it.
 TEST(CheckSequence, LightThatIsLateFromTheBeginningIsCalledLateAndNotUnsteady) {
     std::vector<GrayImage> frames = with_noise(head().frames, 1.5, 3);
