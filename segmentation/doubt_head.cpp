@@ -187,7 +187,8 @@ void judge_face(const TriangleMesh& skin, const HeadBall& ball, SkinJudgement& r
             "Convert the series again from DICOM, and compare the sides with what is known of the patient.");
     add(r.doubts,
         fmt::format("The face is not there: nothing stands out before the cheeks by more than {:.0f} mm where a nose "
-                    "should (noses have 25 to 50 mm); it was taken away, covered or cut off",
+                    "should (noses have 25 to 50 mm); it was taken away, covered or cut off, or the head is bent back "
+                    "or forward",
                     r.nose_mm),
         "Give the series as the scanner made it: the scan is matched by the face.");
 }

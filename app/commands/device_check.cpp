@@ -16,13 +16,22 @@ constexpr Device kDevices[] = {{"left camera", &DeviceSerials::left_camera, &Rig
                                {"right camera", &DeviceSerials::right_camera, &RigCalibration::right_camera},
                                {"projector", &DeviceSerials::projector, &RigCalibration::projector}};
 
+bool has_size(const CameraModel& model, int width, int height) {
+    return model.width == width && model.height == height;
+}
+
 void check_size(const Device& device, int width, int height, const RigCalibration& rig,
                 const std::filesystem::path& folder) {
     const CameraModel& model = rig.*device.model;
-    if (!present(model) || (model.width == width && model.height == height)) return;
+    if (!present(model) || has_size(model, width, height)) return;
+    const std::string problem = fmt::format("{}: the {} has {} x {} pixels here and {} x {} in the rig file",
+                                            folder.string(), device.name, width, height, model.width, model.height);
+    if (device.model == &RigCalibration::left_camera && has_size(rig.right_camera, width, height))
+        throw CheckFailedError(problem, "It is the right camera's size: exchange the left and right pictures.");
+    if (has_size(model, height, width))
+        throw CheckFailedError(problem, "Turn its pictures by 90 degrees, as they were when the rig was calibrated.");
     throw CheckFailedError(
-        fmt::format("{}: the {} has {} x {} pixels here and {} x {} in the rig file", folder.string(), device.name,
-                    width, height, model.width, model.height),
+        problem,
         "Set the device to the resolution it was calibrated at, use the rig.json of this rig, or calibrate again.");
 }
 

@@ -185,14 +185,16 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
                                  movement.moved_mm),
         options.max_movement_mm, said_of_gamma(movement.camera_gamma), said_of_light(movement));
     if (!options.accept_movement)
-        throw CheckFailedError(problem,
-                               said_of_light(movement).empty()
-                                   ? "Scan again, or take the cloud as it is with --accept-movement."
-                                   : "Let nobody switch or shade a lamp, switch off what camera and projector do "
-                                     "to their pictures by themselves (sharpening, contrast, a lamp that "
-                                     "follows the picture), take an exposure of whole cycles of "
-                                     "the lamps' flicker, and scan again; or take the cloud as it is with "
-                                     "--accept-movement.");
+        throw CheckFailedError(
+            problem,
+            said_of_light(movement).empty()
+                ? "Scan again, or take the cloud as it is with --accept-movement. If it comes back on a head that lies "
+                  "still, switch off what the cameras do to their pictures (sharpening, noise reduction)."
+                : "Let nobody switch or shade a lamp, switch off what camera and projector do "
+                  "to their pictures by themselves (sharpening, contrast, a lamp that "
+                  "follows the picture), take an exposure of whole cycles of "
+                  "the lamps' flicker, and scan again; or take the cloud as it is with "
+                  "--accept-movement.");
     warn(problem);
 }
 

@@ -175,13 +175,15 @@ void Bundle::measure_residuals() {
 }
 
 /// One standard deviation per axis from the median length (Rayleigh: median 1.1774 sigma).
+/// Pictures that are cleaner than any camera's leave errors of their own, alike within a pose: they are no outliers.
 void Bundle::update_sigmas() {
+    constexpr double kFinest_px = 0.02;
     for (const DeviceName name : kDevices) {
         std::vector<double> lengths;
         for (const Measurement& m : measurements_)
             if (m.judged_by == name) lengths.push_back(m.residual_px.norm());
         if (lengths.size() < 20) continue;
-        sigma(name) = std::max(0.005, median(std::move(lengths)) / 1.1774);
+        sigma(name) = std::max(kFinest_px, median(std::move(lengths)) / 1.1774);
     }
 }
 

@@ -118,10 +118,9 @@ std::string remedy_of(const SequenceProblem& problem) {
             return "Check the names of the pictures: coarsest bit first, columns before rows; else the delay between "
                    "projector and cameras.";
         case Cause::light:
-            return "Switch off what changes by itself (the camera's automatic exposure and gain, the projector's "
-                   "dynamic contrast), see "
-                   "that nobody moves lamps; else check the delay between projector and cameras and the names of the "
-                   "pictures.";
+            return "See that the patient lies still and nobody moves lamps, and switch off what changes by itself (the "
+                   "camera's automatic exposure and gain, the projector's dynamic contrast); else check the delay "
+                   "between projector and cameras and the names of the pictures.";
         case Cause::mirrored:
             return "See that no picture is mirrored and that the bits are not named as their inverses (white where a "
                    "bit is 1).";
