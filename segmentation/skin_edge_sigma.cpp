@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "planning_io/types/statistics.h"
-#include "segmentation/segment_skin.h"
 #include "planning_io/volume/volume_sample.h"
+#include "segmentation/segment_skin.h"
 
 namespace planlight {
 namespace {

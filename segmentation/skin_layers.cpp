@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "planning_io/types/statistics.h"
-#include "segmentation/triangle_area.h"
 #include "planning_io/volume/volume_sample.h"
+#include "segmentation/triangle_area.h"
 
 namespace planlight {
 namespace {

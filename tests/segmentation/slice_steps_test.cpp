@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "planning_io/volume/read_volume.h"
+#include "planning_io/volume/volume_sample.h"
 #include "segmentation/skin_judgement.h"
 #include "segmentation/skin_shape.h"
-#include "planning_io/volume/volume_sample.h"
 #include "tests/support/test_data.h"
 
 namespace planlight::test {
