@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "planning_io/types/error.h"
+#include "planning_io/types/statistics.h"
 #include "planning_io/volume/volume_sample.h"
 
 namespace planlight {
@@ -79,13 +80,6 @@ double to_edge_mm(const Falls& falls, double least) {
     return nearest;
 }
 
-double middle_of(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 }  // namespace
 
 SurfaceFit fit_of(const TriangleMesh& surface, const Volume& volume) {
@@ -107,8 +101,8 @@ SurfaceFit fit_of(const TriangleMesh& surface, const Volume& volume) {
     }
     if (all.empty()) return fit;
     constexpr double kOfUsual = 0.4, kLeast_hu = 150, kLeast = 0.15;
-    const double no_noise = volume.is_hu ? kLeast_hu : kLeast * middle_of(std::move(most));
-    const double least = std::max({kOfUsual * middle_of(std::move(here)), no_noise, 1e-9});
+    const double no_noise = volume.is_hu ? kLeast_hu : kLeast * median(std::move(most));
+    const double least = std::max({kOfUsual * median(std::move(here)), no_noise, 1e-9});
     std::vector<double> off_mm;
     for (const Falls& falls : all) {
         off_mm.push_back(to_edge_mm(falls, least));
@@ -116,7 +110,7 @@ SurfaceFit fit_of(const TriangleMesh& surface, const Volume& volume) {
     }
     fit.share_darker /= static_cast<double>(all.size());
     fit.share_on_edge /= static_cast<double>(all.size());
-    fit.median_mm = middle_of(std::move(off_mm));
+    fit.median_mm = median(std::move(off_mm));
     return fit;
 }
 
@@ -149,8 +143,7 @@ std::string doubt_of(const SurfaceFit& fit, const std::filesystem::path& file) {
     if (fit.share_on_edge >= kUsuallyOnEdge) return {};
     return fmt::format(
         "{}: {:.0f} % of its points lie within {:.0f} mm of an edge of the volume, fewer than of a surface that was "
-        "made "
-        "on it: it may have been moved, turned, mirrored or smoothed since; look at it in the slices of the page",
+        "made on it: it may have been moved, turned, mirrored or smoothed since; look at it in the slices of the page",
         file.filename().string(), 100 * fit.share_on_edge, kOnEdge_mm);
 }
 
