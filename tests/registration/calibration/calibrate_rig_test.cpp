@@ -88,6 +88,18 @@ TEST(CalibrateRig, ABentBoardIsFoundBent) {
     EXPECT_FALSE(found.warnings.empty());
 }
 
+/// Pictures cleaner than any camera's: a pose that is a few hundredths of a pixel off, as by how a picture was made, is
+/// no camera that was moved.
+TEST(CalibrateRig, APoseAFewHundredthsOfAPixelOffIsNoKnock) {
+    test::IdealRoom room = test::ideal_room(13);
+    room.noise_px = 0.003, room.light_noise_px = 0.08;
+    auto poses = room.observe();
+    for (Eigen::Vector2d& pixel : poses[0].left.corners.pixels)
+        pixel += 0.04 * Eigen::Vector2d(std::sin(pixel.x() / 30), std::cos(pixel.y() / 30));
+    const Calibration found = calibrated(room, poses);
+    EXPECT_FALSE(found.refusal) << found.refusal->reason;
+}
+
 /// A device that hangs upside down beside another and looks at the same place is turned by just 180 degrees against it.
 /// There a rotation vector jumps from one side to the other, and the rigs of the held-out poses came to lie on both:
 /// one and the same rig, far apart by its numbers. The prediction is that of the device upright, but for what a
