@@ -124,6 +124,9 @@ std::optional<DicomRefusal> fault_of_stack(const std::vector<DicomSlice>& slices
                        "Give a series whose slices follow each other in space.");
     for (std::size_t i = 0; i < gaps.size(); ++i) {
         const std::string between = fmt::format("between {} and {}", slices[i].file, slices[i + 1].file);
+        if (gaps[i] < kEven_mm && slices[i].file == slices[i + 1].file)
+            return refusal(fmt::format("two files named {} lie at the same place (double slice)", slices[i].file),
+                           "They lie in different folders: give the folder of one copy.");
         if (gaps[i] < kEven_mm)
             return refusal(fmt::format("{} and {} lie at the same place, {:.3f} mm apart (double slice)",
                                        slices[i].file, slices[i + 1].file, gaps[i]),

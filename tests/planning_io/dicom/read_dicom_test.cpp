@@ -48,6 +48,14 @@ TEST(DicomSlices, AnEvenStackInAnyOrderIsAVolumeAndATiltIsKept) {
     EXPECT_LT((ct_from_voxel * Vector3d(10, 20, 5) - Vector3d(-100 + 5, -120 + 12 + 2, 7 + 7.5)).norm(), 1e-9);
 }
 
+TEST(DicomSlices, CopiesInTwoFoldersAreCalledSo) {
+    auto slices = a_stack();
+    slices.push_back(slices[7]);
+    EXPECT_EQ(problem(slices), "two files named slice7 lie at the same place (double slice)");
+    slices.back().file = "another";
+    EXPECT_NE(problem(slices).find("another and slice7 lie at the same place"), std::string::npos) << problem(slices);
+}
+
 // The gantry's angle stands in the header, and in the slices' places unless it was lost on the way.
 TEST(DicomSeries, ATiltThatTheHeaderSaysAndTheSlicesDoNotIsSaid) {
     const test::TemporaryFolder folder;
