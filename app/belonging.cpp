@@ -14,6 +14,7 @@
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/statistics.h"
+#include "projection/skin_now.h"
 #include "registration/matching/register_patient.h"
 
 namespace planlight {
@@ -263,56 +264,38 @@ RigCalibration rig_of_light(const RegistrationResult& match, const RigCalibratio
 
 namespace {
 
-/// Over how much of an item the scan saw something on the skin; empty where it is worth no word.
-std::optional<std::string> covered_in_words(const PlanDrawing& planned, std::size_t index,
-                                            const SkinDisplacement& skin) {
-    constexpr double kWorthAsking = 0.1;
-    double points = 0, covered = 0, most_mm = 0;
+/// The worst bound of an item on the skin, of some of its points; 0 where none is known.
+double worst_on_skin_mm(const PlanDrawing& planned, std::size_t item, const RegistrationResult& found) {
+    constexpr std::size_t kSome = 8;  // of a stroke: the bound changes over centimetres
+    double worst_mm = 0;
     for (const Stroke& stroke : planned.strokes) {
-        if (stroke.item != static_cast<int>(index) || stroke.kind == StrokeKind::label) continue;
-        for (const auto& p : stroke.points_in_ct) {
-            ++points;
-            if (const auto mm = covered_by_mm(skin, p)) ++covered, most_mm = std::max(most_mm, *mm);
-        }
+        if (stroke.item != static_cast<int>(item) || stroke.kind == StrokeKind::label) continue;
+        for (std::size_t i = 0; i < stroke.points_in_ct.size(); i += 1 + stroke.points_in_ct.size() / kSome)
+            if (const double mm = predicted_light_mm(found, stroke.points_in_ct[i]); std::isfinite(mm))
+                worst_mm = std::max(worst_mm, mm);
     }
-    if (covered == 0 || covered < kWorthAsking * points) return std::nullopt;
-    return fmt::format(
-        "{}: over {:.0f} % of it the scan saw a surface up to {:.0f} mm outside the skin of the CT; the skin is "
-        "swollen "
-        "there, or something lies on it.",
-        planned.items[index].name, 100 * covered / points, most_mm);
-}
-
-/// The points of each item that lie on the skin, as `draw_plan` has them.
-std::vector<std::vector<Eigen::Vector3d>> points_on_skin(const Plan& plan) {
-    std::vector<std::vector<Eigen::Vector3d>> points;
-    for (const auto& line : plan.osteotomy_lines) points.push_back(line.points_in_ct);
-    for (const auto& hole : plan.boreholes) points.push_back({hole.position_in_ct});
-    for (const auto& trajectory : plan.trajectories) points.push_back({trajectory.entry_in_ct});
-    for (const auto& plane : plan.cut_planes) points.push_back({plane.origin_in_ct});
-    return points;
+    return worst_mm;
 }
 
 }  // namespace
 
-void judge_items(const Plan& plan, const PlanDrawing& planned, RegistrationResult& found) {
+void judge_items(const PlanDrawing& planned, RegistrationResult& found) {
     constexpr double kMost_mm = 1.5;
     if (found.verdict == Verdict::no || !found.covariance.known()) return;
-    const auto ask = [&](const std::string& reason) {
-        found.verdict = Verdict::ask;
-        found.reasons.push_back(reason);
-    };
-    for (std::size_t i = 0; i < planned.items.size() && !found.skin.covered.empty(); ++i)
-        if (const auto covered = covered_in_words(planned, i, found.skin)) ask(*covered);
-    double worst_mm = 0;
-    std::size_t worst = 0;
-    const auto items = points_on_skin(plan);
-    for (std::size_t i = 0; i < std::min(items.size(), planned.items.size()); ++i)
-        for (const auto& p : items[i])
-            if (const double mm = predicted_light_mm(found, p); std::isfinite(mm) && mm > worst_mm)
-                worst_mm = mm, worst = i;
-    if (worst_mm > kMost_mm)
-        ask(fmt::format("{}: it may lie up to {:.1f} mm off (95 %).", planned.items[worst].name, worst_mm));
+    std::vector<std::string> reasons;
+    double worst_mm = kMost_mm;
+    std::optional<std::size_t> worst;
+    for (std::size_t i = 0; i < planned.items.size(); ++i)
+        if (auto covered = covered_in_words(planned, i, found.skin))
+            reasons.push_back(std::move(*covered));
+        else if (const double mm = worst_on_skin_mm(planned, i, found); mm > worst_mm)
+            worst_mm = mm, worst = i;
+    if (worst)
+        reasons.push_back(
+            fmt::format("{}: it may lie up to {:.1f} mm off (95 %)", planned.items[*worst].name, worst_mm));
+    if (reasons.empty()) return;
+    found.verdict = Verdict::ask;
+    found.reasons.insert(found.reasons.end(), reasons.begin(), reasons.end());
 }
 
 }  // namespace planlight

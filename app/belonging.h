@@ -63,9 +63,9 @@ PointCloud read_cloud_of(const RegistrationResult& match, const std::filesystem:
 /// not be trusted, or where nothing is known of it and `confirmed` is not said.
 RigCalibration rig_of_light(const RegistrationResult& match, const RigCalibration& rig, bool confirmed);
 
-/// Looks at each item of the plan by what the scan tells of it: one of which a tenth or more is covered
-/// (`SkinDisplacement::covered`), or that may lie more than 1.5 mm off on the skin (95 %), is asked about, by name, and
-/// `found.verdict` is no `yes` any more. After `take_case_and_rig`.
-void judge_items(const Plan& plan, const PlanDrawing& planned, RegistrationResult& found);
+/// Looks at each item of the plan, as drawn on the CT's skin, by what the scan tells of it: those of which a tenth or
+/// more is covered (`covered_in_words`), and the worst of those that may lie more than 1.5 mm off (95 %), are asked
+/// about by name, and `found.verdict` is no `yes` any more. After `take_case_and_rig`.
+void judge_items(const PlanDrawing& planned, RegistrationResult& found);
 
 }  // namespace planlight

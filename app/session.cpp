@@ -210,7 +210,7 @@ void Session::match(const std::vector<PointPair>& landmarks) {
     registration_ = register_with_landmarks(scanned_->clean.kept, case_.lut, landmarks, settings);
     registration_->moved_in_scan_mm = motion_in_scan_mm_;
     take_case_and_rig(case_, rig_state_, *registration_);
-    judge_items(case_.plan, planned_.drawing, *registration_);
+    judge_items(planned_.drawing, *registration_);
     if (registration_->verdict != Verdict::no) draw_on_skin_as_found();
     start_overlay();
 }

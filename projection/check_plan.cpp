@@ -309,7 +309,7 @@ private:
     void check_under_something() {
         constexpr double kOnSkin_mm = 2.5, kUnder_mm = 5, kMost = 0.6;
         constexpr std::size_t kFewest = 3;
-        if (depths_.size() < kFewest || settings_.above_skin_mm >= settings_.too_far_mm) return;
+        if (depths_.size() < kFewest || !settings_.on_skin) return;
         double on_skin = 0;
         for (const auto& [name, depth_mm] : depths_) on_skin += depth_mm < kOnSkin_mm;
         if (on_skin < kMost * static_cast<double>(depths_.size())) return;

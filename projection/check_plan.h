@@ -28,12 +28,14 @@ struct PlanCheckSettings {
     double turned_fit_mm =
         1;  ///< a turned or mirrored copy of the plan with 90 % of its points this near to the skin ...
     double turned_gain = 3;  ///< ... and this many times nearer than half of the plan's own: stopped
+    bool on_skin = true;     ///< false: on a surface that somebody else segmented, bone for example
 };
 
 /// On a surface that somebody else segmented, bone for example, much of a plan may lie above it. `given`: false: on
 /// skin.
 inline PlanCheckSettings plan_checks_on(bool given) {
     PlanCheckSettings settings;
+    settings.on_skin = !given;
     if (given) settings.above_skin_mm = settings.too_far_mm;
     return settings;
 }

@@ -253,7 +253,7 @@ int run_register(const RegisterOptions& options) {
     RegistrationResult result = match(options, the_case, cloud, rig);
     take_case_and_rig(the_case, rig, result);
     const CaseDrawing drawing(the_case);
-    judge_items(the_case.plan, drawing.drawing, result);
+    judge_items(drawing.drawing, result);
     const bool keeps = keeps_what_was_there(result, options.out);
     if (!keeps) write_registration(result, options.out);
     if (!options.slicer_transform.empty() && result.verdict != Verdict::no)

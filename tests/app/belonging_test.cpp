@@ -160,7 +160,7 @@ TEST(ItemsOfAMatch, OneThatTheScanSawCoveredIsAskedAboutByName) {
     match.skin.apart_mm = 4;
     match.skin.places = {{{20, 0, 700}, 0, 0.1}};
     match.skin.covered = {{{1, 0, 700}, 7}, {{60, 0, 700}, 9}};
-    judge_items(a_case().plan, drawn_hole(), match);
+    judge_items(drawn_hole(), match);
     EXPECT_EQ(match.verdict, Verdict::ask);
     ASSERT_EQ(match.reasons.size(), 1U);
     EXPECT_NE(match.reasons[0].find("B1: over 100 % of it the scan saw a surface up to 7 mm outside"),
@@ -171,7 +171,7 @@ TEST(ItemsOfAMatch, OneThatTheScanSawCoveredIsAskedAboutByName) {
     RegistrationResult elsewhere = match_with(a_state(RigState::Verdict::as_calibrated));
     elsewhere.skin.apart_mm = 4;
     elsewhere.skin.covered = {{{60, 0, 700}, 9}};
-    judge_items(a_case().plan, drawn_hole(), elsewhere);
+    judge_items(drawn_hole(), elsewhere);
     EXPECT_EQ(elsewhere.verdict, Verdict::yes);
 }
 
@@ -179,7 +179,7 @@ TEST(ItemsOfAMatch, OneThatMayLieFarOffIsAskedAbout) {
     for (const auto& [sigma_mm, verdict] : {std::pair(0.3, Verdict::yes), {0.8, Verdict::ask}}) {
         RegistrationResult match = match_with(a_state(RigState::Verdict::as_calibrated));
         match.covariance.of_turn_and_shift.diagonal().tail<3>().setConstant(sigma_mm * sigma_mm);
-        judge_items(a_case().plan, drawn_hole(), match);
+        judge_items(drawn_hole(), match);
         EXPECT_EQ(match.verdict, verdict) << predicted_light_mm(match, {0, 0, 700});
     }
 }
