@@ -17,9 +17,6 @@ struct DisplacementSettings {
     int min_points = 5;            ///< of a place
     int min_places = 40;           ///< fewer tell nothing
     double least_sigma_mm = 0.02;  ///< of a place: what all its points share
-    double most_cover_mm = 20;     ///< a surface farther outside the skin does not lie on it
-    double least_cover_mm = 1;     ///< outside the skin's offset, from where on it is none
-    double most_slope = 0.45;      ///< of skin that swells, against the CT's
 };
 
 /// How far off the CT's skin the scan found the skin, place by place, at this pose: the medians of the signed
@@ -27,13 +24,5 @@ struct DisplacementSettings {
 /// along the normals is in the displacement, so that the skin drawn on is the skin that was scanned.
 SkinDisplacement measure_displacement(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
                                       const DisplacementSettings& settings = {});
-
-/// Looks at all that the scan saw, taken for skin or not (`skin`: of what was): where nothing was found to be skin and
-/// a surface lies outside of it, facing as it does, the CT's skin is covered (`SkinDisplacement::covered`), by a
-/// swelling, a dressing, cloth, hair. A swelling rises from the skin on all sides without a step: it is skin, too, and
-/// becomes places of it, so that light is drawn on it as it stands. Offset and spread stay those of the skin that was
-/// matched.
-void add_covered_skin(const PointCloud& all, const SkinLut& lut, const RigidTransform& ct_from_rig,
-                      SkinDisplacement& skin, const DisplacementSettings& settings = {});
 
 }  // namespace planlight

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "registration/matching/cloud_pieces.h"
+#include "registration/matching/covered_skin.h"
 #include "registration/matching/find_skin.h"
 #include "registration/matching/free_space.h"
 #include "registration/matching/innermost_layer.h"

@@ -32,4 +32,12 @@ PointCloud sphere_view(double radius_mm, int points, unsigned seed);
 PointCloud cylinder_view(double radius_mm, double height_mm, int points, unsigned seed);
 PointCloud plane_view(double width_mm, int points, unsigned seed);
 
+/// The view with every point moved along its normal by `mm(point, normal)`.
+template <class Mm>
+PointCloud displaced(PointCloud cloud, const Mm& mm) {
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+        cloud.points_in_rig[i] += mm(cloud.points_in_rig[i], cloud.normals_in_rig[i]) * cloud.normals_in_rig[i];
+    return cloud;
+}
+
 }  // namespace planlight::test
