@@ -261,8 +261,7 @@ TEST_F(SurfaceOnPatient, OnlyWhereItLiesInTheCtASurfaceIsTaken) {
     }
 }
 
-// What lies somewhere between skin and bone, everywhere brighter under it than over it, is still not where the CT has
-// an edge: a surface that was moved, turned, scaled or mirrored since.
+// Moved, turned or made smaller since; the figures are those of the pages. (`SurfaceFit` asks each measure by itself.)
 TEST_F(SurfaceOnPatient, ASurfaceThatWasMovedALittleIsNotTaken) {
     for (const SurfaceFile& surface : surfaces_) {
         Vector3d low = surface.mesh.vertices_in_ct.front(), high = low;
