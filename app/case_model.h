@@ -33,8 +33,8 @@ std::vector<std::string> evidence_of_labels(const PlanDrawing& drawing);
 OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing);
 
 /// How far off each item of the plan may be by the registration, 95 %, mm: its worst point. In the order in which
-/// `draw_plan` gives the items. Infinite where the scan held too little skin to tell.
-/// Infinite, too, where the scan saw something on the skin there (`covered_by_mm`).
+/// `draw_plan` gives the items. Infinite where the scan held too little skin to tell, or saw something on the skin
+/// there (`covered_by_mm`).
 std::vector<double> predicted_errors_mm(const Plan& plan, const RegistrationResult& found);
 
 /// How far off each vertex of the skin may be by the registration, 95 %, mm; infinite where it cannot be told.

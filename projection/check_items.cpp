@@ -83,8 +83,7 @@ public:
         check_ends(end_mm, lids_mm);
         if (const auto legs = crossing.first(line.closed))
             add("it crosses itself: its way from point {} to {} and that from {} to {} meet; are its points in the "
-                "right "
-                "order?",
+                "right order?",
                 legs->first + 1, (legs->first + 1) % count + 1, legs->second + 1, (legs->second + 1) % count + 1);
         if (step_mm > torn_mm(s))
             add("it jumps {:.1f} mm where the skin has a fold or a border, and is not on the skin there", step_mm);

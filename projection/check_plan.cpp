@@ -318,8 +318,7 @@ private:
                 verdict_.warnings.push_back(fmt::format(
                     "{}: it lies {:.1f} mm under the skin, most of the plan within {:.1f} mm of it: unless it was "
                     "planned on the bone, something lies on the skin there (a dressing, a pad, a marker), and the "
-                    "light "
-                    "is not drawn where it belongs",
+                    "light is not drawn where it belongs",
                     name.empty() ? "an item without a name" : name, depth_mm, kOnSkin_mm));
     }
 

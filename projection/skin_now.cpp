@@ -50,8 +50,7 @@ std::optional<std::string> covered_in_words(const PlanDrawing& planned, std::siz
     if (covered == 0 || covered < kWorthSaying * points) return std::nullopt;
     return fmt::format(
         "{}: over {:.0f} % of it the scan saw a surface up to {:.0f} mm outside the skin of the CT; the skin is "
-        "swollen "
-        "there, or something lies on it",
+        "swollen there, or something lies on it",
         planned.items[item].name, 100 * covered / points, most_mm);
 }
 

@@ -291,11 +291,11 @@ std::optional<Refusal> judge_rig(const std::vector<PoseObservation>& poses, cons
             if (auto refusal = judge_lens(*d, name)) return refusal;
     if (!calibration.volume) return std::nullopt;
     const VolumeError& volume = *calibration.volume;
-    if (!(volume.p95_mm <= s.max_predicted_mm) || !(volume.light_p95_mm <= s.max_predicted_mm))
-        return Refusal{fmt::format("the poses do not determine the rig: {} would be uncertain by {:.1f} mm",
-                                   volume.p95_mm <= s.max_predicted_mm ? "the light" : "points",
-                                   volume.p95_mm <= s.max_predicted_mm ? volume.light_p95_mm : volume.p95_mm),
-                       "Capture more poses, tilted 15 to 40 degrees every way and at two distances."};
+    for (const auto& [what, p95_mm] : {std::pair("points", volume.p95_mm), {"the light", volume.light_p95_mm}})
+        if (!(p95_mm <= s.max_predicted_mm))
+            return Refusal{
+                fmt::format("the poses do not determine the rig: {} would be uncertain by {:.1f} mm", what, p95_mm),
+                "Capture more poses, tilted 15 to 40 degrees every way and at two distances."};
     return std::nullopt;
 }
 
