@@ -107,6 +107,11 @@ void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig,
         match.verdict = Verdict::ask;
         match.reasons.push_back(reason);
     };
+    if (rig->accepted_movement_mm > 0)
+        ask(
+            fmt::format("The patient moved by {:.1f} mm during the scan, and it was taken all the same "
+                        "(--accept-movement).",
+                        rig->accepted_movement_mm));
     if (rig->verdict == RigState::Verdict::unknown) {
         std::string reason = rig->sentence.empty() ? "whether the rig moved is not known" : rig->sentence;
         reason.front() = 'W';

@@ -131,7 +131,12 @@ void Session::make_scan(const std::function<void(int, int)>& progress) {
     capture_.reset();
     add_darker_captures(projector_, cameras_, clock_, exposures, progress);
     // What moved since the first capture must not be joined to it.
-    if (exposures.size() > 1 && moved_at_the_end_mm() > settings_.max_motion_in_scan_mm) exposures.resize(1);
+    const auto moved_in = [&](const ScanCapture& exposure) {
+        return movement_of_markers(exposure, rig_, settings_.tracking).moved_mm > settings_.max_motion_in_scan_mm;
+    };
+    if (exposures.size() > 1 && (moved_at_the_end_mm() > settings_.max_motion_in_scan_mm ||
+                                 std::any_of(exposures.begin() + 1, exposures.end(), moved_in)))
+        exposures.resize(1);
     scanned_ = scan_from_exposures(exposures, calibrated_, settings_.scan);
     capture_ = std::move(exposures.front());
     take_rig(*capture_);

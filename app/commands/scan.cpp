@@ -168,6 +168,11 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
         return;
     }
     if (movement.way_mm() <= options.max_movement_mm) {
+        if (movement.by == ScanMovement::By::markers && !movement.throughout)
+            warn(
+                fmt::format("whether the patient moved is known of a part of the scan only: the markers are seen in {} "
+                            "of its pictures under even light",
+                            movement.moments));
         if (movement.unseen_mm() > options.max_movement_mm)
             warn(
                 fmt::format("whether the patient moved during the scan is known to {:.1f} mm only: the skin shows "
@@ -196,6 +201,20 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
                   "the lamps' flicker, and scan again; or take the cloud as it is with "
                   "--accept-movement.");
     warn(problem);
+}
+
+/// Of the capture in which the patient moved most. One that is exposed for the darkest or the brightest places shows
+/// too little to tell by; of the first that is said.
+ScanMovement judged_movement(const std::vector<ScanCapture>& captures, const ScanResult& scan,
+                             const RigCalibration& rig, const ScanOptions& options) {
+    ScanMovement most;
+    for (const ScanCapture& capture : captures) {
+        const bool first = &capture == &captures.front();
+        const ScanMovement movement = movement_in_scan(capture, rig, scan.clean.kept);
+        if (first || movement.way_mm() > options.max_movement_mm) judge_movement(movement, options);
+        if (first || movement.way_mm() > most.way_mm()) most = movement;
+    }
+    return most;
 }
 
 /// Where most of what was read lies off the rays of the rig file, the rest lies on them by chance.
@@ -242,12 +261,14 @@ int run_scan(const ScanOptions& options) {
     const ScanCapture& capture = captures.front();
     const ScanResult scan = scan_from_exposures(captures, rig);
     judge_fit(scan, rig);
-    const ScanMovement movement = movement_in_scan(capture, scan.rig.rig.whole() ? scan.rig.rig : rig, scan.clean.kept);
-    judge_movement(movement, options);  // before the devices, which the light on moving skin accuses wrongly
+    // Before the devices, which the light on moving skin accuses wrongly.
+    const ScanMovement movement = judged_movement(captures, scan, scan.rig.rig.whole() ? scan.rig.rig : rig, options);
     warn_of(scan, rig);
     for (const ScanCapture& one : captures) warn_of_three_shifts(one);
     warn_of_ragged(scan);
-    const std::vector<std::string> names = comments_of(named_rig_state(scan, rig, capture));
+    RigState state = named_rig_state(scan, rig, capture);
+    if (movement.way_mm() > options.max_movement_mm) state.accepted_movement_mm = movement.way_mm();
+    const std::vector<std::string> names = comments_of(state);
     write_cloud(scan.clean.kept, options.out, {}, names);
     if (!options.raw_out.empty()) write_cloud(scan.raw.cloud, options.raw_out, {}, names);
     std::vector<std::array<std::int32_t, 3>> triangles;
@@ -319,7 +340,8 @@ Run add_scan(CLI::App& app) {
     sub->add_option("--max-movement-mm", o.max_movement_mm, "Of the patient during the scan; more is refused (exit 6)")
         ->capture_default_str()
         ->check(CLI::Range(0.01, 100.0));
-    sub->add_flag("--accept-movement", o.accept_movement, "Write the cloud of a patient who moved; only warn");
+    sub->add_flag("--accept-movement", o.accept_movement,
+                  "Write the cloud of a patient who moved; only warn (a match with it is asked about)");
     sub->add_flag("--allow-missing", o.allow_missing,
                   "Where pictures are missing use what can be read without them, coarser; else that is refused");
     json_flag(sub, o.json);

@@ -134,6 +134,7 @@ Json json_of(const RigState& state) {
             {"sentence", state.sentence},
             {"remedy", state.remedy},
             {"hidden_light_mm", state.hidden_light_mm},
+            {"accepted_movement_mm", state.accepted_movement_mm},
             {"calibrated", json_of(state.calibrated)},
             {"capture_hash", state.capture_hash},
             {"rig", rig},
@@ -147,6 +148,7 @@ RigState rig_state_of(const JsonValue& value) {
     state.sentence = value.at("sentence").text();
     state.remedy = value.at("remedy").text();
     state.hidden_light_mm = value.at("hidden_light_mm").number();
+    if (const auto moved = value.find("accepted_movement_mm")) state.accepted_movement_mm = moved->number();
     state.calibrated = rig_name_of(value.at("calibrated"));
     state.capture_hash = value.at("capture_hash").text();
     state.rig.made_on = state.calibrated.made_on;

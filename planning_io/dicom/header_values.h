@@ -5,7 +5,7 @@
 #include <array>
 #include <string>
 
-// Values of a DICOM header as plain text and numbers. Heavy (vtk-dicom): for the .cpp files of planning_io/dicom alone.
+// Values of a DICOM header as plain text and numbers. Heavy (vtk-dicom): for .cpp files that read DICOM alone.
 namespace planlight {
 
 /// Printable ASCII; what is not becomes "?", for a damaged file may say anything.

@@ -11,8 +11,11 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <sstream>
 
 #include "planning_io/dicom/dicom_nesting.h"
+#include "planning_io/dicom/header_values.h"
+#include "planning_io/files/header_text.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/files/sandboxed_process.h"
 #include "planning_io/types/error.h"
@@ -31,9 +34,26 @@ std::string text(const vtkDICOMValue& value) {
     return result;
 }
 
-std::vector<double> numbers(const vtkDICOMValue& value) {
-    std::vector<double> list(value.GetNumberOfValues());
-    for (std::size_t i = 0; i < list.size(); ++i) list[i] = value.GetDouble(i);
+/// Numbers of an ROI. Throws InputError where one is not written as a number: the library would read 12 in "12,9", 0 in
+/// "".
+std::vector<double> numbers(const vtkDICOMValue& value, const std::string& roi, const fs::path& file) {
+    const bool is_text = value.GetVR() == vtkDICOMVR::DS || value.GetVR() == vtkDICOMVR::IS;
+    std::vector<double> list;
+    if (!is_text) {
+        for (std::size_t i = 0; i < value.GetNumberOfValues(); ++i) list.push_back(value.GetDouble(i));
+        return list;
+    }
+    std::string all = value.AsString();
+    while (!all.empty() && (all.back() == ' ' || all.back() == '\0')) all.pop_back();
+    if (all.empty()) return list;
+    std::istringstream words(all + '\\');
+    for (std::string word; std::getline(words, word, '\\');) {
+        const auto number = numbers_of(word);
+        if (number.size() != 1)
+            throw InputError(file, fmt::format("ROI \"{}\" has \"{}\" where a number should stand", roi, plain(word)),
+                             "Export the structure set with decimal points, not commas.");
+        list.push_back(number[0]);
+    }
     return list;
 }
 
@@ -75,11 +95,13 @@ std::vector<RtRoi> rois_of(vtkDICOMMetaData* meta, const fs::path& file) {
                                                item.Get(DC::ReferencedROINumber).AsInt()),
                                    kCopyAgain);
         RtRoi& roi = rois[at->second];
-        if (item.Get(DC::ROIDisplayColor).IsValid()) roi.colour = numbers(item.Get(DC::ROIDisplayColor));
+        if (item.Get(DC::ROIDisplayColor).IsValid())
+            roi.colour = numbers(item.Get(DC::ROIDisplayColor), roi.name, file);
         const vtkDICOMSequence contours = item.Get(DC::ContourSequence);
         for (std::size_t c = 0; c < contours.GetNumberOfItems(); ++c) {
             const vtkDICOMItem& contour = contours.GetItem(c);
-            RtContour read{text(contour.Get(DC::ContourGeometricType)), numbers(contour.Get(DC::ContourData))};
+            RtContour read{text(contour.Get(DC::ContourGeometricType)),
+                           numbers(contour.Get(DC::ContourData), roi.name, file)};
             const int points = contour.Get(DC::NumberOfContourPoints).AsInt();
             if (static_cast<std::size_t>(3 * std::max(points, 0)) != read.numbers.size())
                 throw DamagedFileError(file,
@@ -102,8 +124,11 @@ void parse(Parcel& parcel, const fs::path& file) {
     if (parser->GetErrorCode() != 0) throw DamagedFileError(file, "is damaged or cut short", kCopyAgain);
     const auto rois = rois_of(meta, file);
     const vtkDICOMSequence frames = meta->Get(DC::ReferencedFrameOfReferenceSequence);
+    // What the ROIs say goes first: beside their frame the list may name those of registered series.
     std::string frame = text(meta->Get(DC::FrameOfReferenceUID));
     if (frames.GetNumberOfItems() > 0) frame = text(frames.GetItem(0).Get(DC::FrameOfReferenceUID));
+    for (auto roi = rois.rbegin(); roi != rois.rend(); ++roi)
+        if (!roi->frame_of_reference_uid.empty()) frame = roi->frame_of_reference_uid;
     parcel.put(frame);
     parcel.put(static_cast<std::uint64_t>(rois.size()));
     for (const RtRoi& roi : rois) {
@@ -132,6 +157,27 @@ std::vector<RtRoi> unpack(Parcel& parcel) {
 
 }  // namespace
 
+bool is_closed(const RtContour& contour) {
+    return contour.type == "CLOSED_PLANAR" || contour.type == "CLOSEDPLANAR_XOR";
+}
+
+std::string no_organ(const RtRoi& roi) {
+    static const std::map<std::string, std::string> kinds{{"EXTERNAL", "the outline of the patient"},
+                                                          {"PTV", "what is to be treated"},
+                                                          {"CTV", "what is to be treated"},
+                                                          {"GTV", "what is to be treated"},
+                                                          {"TREATED_VOLUME", "what is to be treated"},
+                                                          {"IRRAD_VOLUME", "what is irradiated"},
+                                                          {"BOLUS", "a bolus"},
+                                                          {"SUPPORT", "a support"},
+                                                          {"FIXATION", "a fixation"},
+                                                          {"REGISTRATION", "for registration only"},
+                                                          {"ISOCENTER", "an isocentre"},
+                                                          {"MARKER", "a marker"}};
+    const auto kind = kinds.find(roi.interpreted_type);
+    return kind == kinds.end() ? std::string() : kind->second;
+}
+
 bool is_rt_struct(const fs::path& file) {
     std::string head(4096, '\0');
     std::ifstream in(file, std::ios::binary);
@@ -146,7 +192,6 @@ RtStruct read_rt_struct(const fs::path& file) {
     set.frame_of_reference_uid = parcel.get_text();
     set.rois = unpack(parcel);
     if (set.rois.empty()) throw InputError(file, "names no ROI", "Export the structure set with the plan's contours.");
-    if (set.frame_of_reference_uid.empty()) set.frame_of_reference_uid = set.rois.front().frame_of_reference_uid;
     for (const RtRoi& roi : set.rois)
         if (!roi.frame_of_reference_uid.empty() && roi.frame_of_reference_uid != set.frame_of_reference_uid)
             throw InputError(file,

@@ -53,6 +53,11 @@ std::string TextHeader::get(const std::string& name, const std::string& otherwis
     return field == fields.end() ? otherwise : field->second;
 }
 
+std::string without_byte_order_mark(std::string text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+    return text;
+}
+
 std::vector<double> numbers_of(std::string text) {
     std::vector<double> numbers;
     std::istringstream words(text);

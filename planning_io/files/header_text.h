@@ -29,6 +29,9 @@ struct TextHeader {
 /// of printable text, no name twice. Lines that begin with '#' are left out. Throws DamagedFileError.
 TextHeader read_text_header(const std::filesystem::path& file, const std::string& separator, const std::string& last);
 
+/// A text without the mark (U+FEFF) that Windows programs write before UTF-8.
+std::string without_byte_order_mark(std::string text);
+
 /// Numbers of a text; empty when it holds anything else.
 std::vector<double> numbers_of(std::string text);
 

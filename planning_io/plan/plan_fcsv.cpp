@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "planning_io/files/header_text.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/plan/plan_settings.h"
 #include "planning_io/types/error.h"
@@ -138,7 +139,7 @@ PlanImport read_fcsv(const std::string& content, const fs::path& file, const Pla
     PlanImport read;
     Header header;
     std::optional<Space> space;
-    std::istringstream lines(content);
+    std::istringstream lines(without_byte_order_mark(content));
     int number = 0;
     for (std::string line; std::getline(lines, line);) {
         ++number;

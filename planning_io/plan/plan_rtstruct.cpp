@@ -35,8 +35,15 @@ public:
     std::string nothing_to_draw() const {
         if (roi_.contours.empty()) return "has no contours";
         if (said_.text("kind")) return {};
+        if (const std::string what = no_organ(roi_); !what.empty())
+            return fmt::format(
+                "is {} by its type ({}), nothing to be lit (its description `kind=osteotomy_line` or `kind=borehole` "
+                "says otherwise)",
+                what, roi_.interpreted_type);
+        // A lens lies on two slices of a usual CT.
+        const bool organ = roi_.interpreted_type == "ORGAN" || roi_.interpreted_type == "AVOIDANCE";
         const std::size_t heights = count_heights();
-        return heights >= kSolidHeights
+        return heights >= (organ ? 2 : kSolidHeights)
                    ? fmt::format("has contours at {} heights: a solid, not a line (--risk takes it)", heights)
                    : std::string();
     }
@@ -57,8 +64,8 @@ public:
                     {name, points[0], points[1], said_.length_mm("diameter_mm", kMaxDiameter_mm), colour_});
             } else if (kind == "cut_plane") {
                 append_plane(plan, name, points);
-            } else if (type == "CLOSED_PLANAR" || type == "OPEN_PLANAR" || type == "OPEN_NONPLANAR") {
-                append_line(plan, name, std::move(points), type == "CLOSED_PLANAR");
+            } else if (is_closed(roi_.contours[c]) || type == "OPEN_PLANAR" || type == "OPEN_NONPLANAR") {
+                append_line(plan, name, std::move(points), is_closed(roi_.contours[c]));
             } else {
                 refuse("has a contour of the type \"" + type + "\"");
             }
@@ -114,7 +121,7 @@ private:
     std::size_t count_heights() const {
         std::vector<std::vector<Vector3d>> closed;
         for (const RtContour& contour : roi_.contours)
-            if (contour.type == "CLOSED_PLANAR") closed.push_back(points_of_contour(contour));
+            if (is_closed(contour)) closed.push_back(points_of_contour(contour));
         return heights_of_contours(closed);
     }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "planning_io/files/header_text.h"
 #include "planning_io/plan/plan_fcsv.h"
 #include "planning_io/plan/plan_settings.h"
 #include "planning_io/types/error.h"
@@ -137,7 +138,7 @@ PlanImport read_trajectory_table(const std::string& content, const fs::path& fil
     char separator = ',';
     Space space = Space::lps;
     double mm_per_unit = 1;
-    std::istringstream lines(content.starts_with("\xEF\xBB\xBF") ? content.substr(3) : content);
+    std::istringstream lines(without_byte_order_mark(content));
     int number = 0;
     for (std::string line; std::getline(lines, line);) {
         ++number;

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "planning_io/files/header_text.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/coordinate_space.h"
 #include "planning_io/types/error.h"
@@ -40,7 +41,7 @@ double number(const std::string& text, int line, const std::filesystem::path& fi
 }  // namespace
 
 std::vector<PointPair> read_point_pairs(const std::filesystem::path& file) {
-    std::istringstream in(read_whole(file));
+    std::istringstream in(without_byte_order_mark(read_whole(file)));
     std::optional<Space> space;
     std::vector<PointPair> pairs;
     std::set<std::string> names;

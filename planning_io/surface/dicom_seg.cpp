@@ -11,10 +11,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 
 #include "planning_io/dicom/dicom_nesting.h"
+#include "planning_io/dicom/header_values.h"
 #include "planning_io/files/header_text.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/files/sandboxed_process.h"
@@ -40,13 +42,13 @@ std::string text(const vtkDICOMValue& value) {
     return result;
 }
 
-Vector3d vector(const vtkDICOMValue& value, unsigned from, const fs::path& file, const char* what) {
-    if (value.GetNumberOfValues() < from + 3)
-        throw InputError(file, fmt::format("has a frame without {}", what), kExportAgain);
-    const Vector3d v(value.GetDouble(from), value.GetDouble(from + 1), value.GetDouble(from + 2));
-    if (!v.allFinite() || v.cwiseAbs().maxCoeff() > 1e5)
-        throw InputError(file, fmt::format("has a frame whose {} makes no sense", what), kExportAgain);
-    return v;
+/// As many numbers of a frame as `count`, six at most.
+std::array<double, 6> numbers(vtkDICOMMetaData* meta, int frame, vtkDICOMTag tag, unsigned count, const fs::path& file,
+                              const char* what) {
+    const auto list = numbers_at(meta, frame, tag, count);
+    if (!std::all_of(list.begin(), list.begin() + count, [](double n) { return std::abs(n) <= 1e5; }))
+        throw InputError(file, fmt::format("has a frame without {} in numbers that make sense", what), kExportAgain);
+    return list;
 }
 
 /// The number of the segment with this label, or of the only one.
@@ -93,18 +95,18 @@ Stack stack_of(vtkDICOMMetaData* meta, int segment, const fs::path& file) {
     double column_mm = 0, row_mm = 0;
     for (int f = 0; f < count; ++f) {
         if (meta->Get(0, f, DC::ReferencedSegmentNumber).AsInt() != segment) continue;
-        const vtkDICOMValue orientation = meta->Get(0, f, DC::ImageOrientationPatient),
-                            spacing = meta->Get(0, f, DC::PixelSpacing);
-        const Vector3d r = vector(orientation, 0, file, "orientation"), c = vector(orientation, 3, file, "orientation");
-        if (spacing.GetNumberOfValues() < 2) throw InputError(file, "has a frame without pixel spacing", kExportAgain);
+        const auto o = numbers(meta, f, DC::ImageOrientationPatient, 6, file, "orientation"),
+                   spacing = numbers(meta, f, DC::PixelSpacing, 2, file, "pixel spacing"),
+                   p = numbers(meta, f, DC::ImagePositionPatient, 3, file, "position");
+        const Vector3d r(o[0], o[1], o[2]), c(o[3], o[4], o[5]);
         if (along_row && ((*along_row - r).norm() > 1e-3 || (*along_column - c).norm() > 1e-3 ||
-                          std::abs(spacing.GetDouble(0) - row_mm) > 1e-3))
+                          std::abs(spacing[0] - row_mm) > 1e-3))
             throw InputError(file, "has frames that are not parallel, or of different spacing", kExportAgain);
         along_row = r;
         along_column = c;
-        row_mm = spacing.GetDouble(0);
-        column_mm = spacing.GetDouble(1);
-        frames.push_back({f, vector(meta->Get(0, f, DC::ImagePositionPatient), 0, file, "position")});
+        row_mm = spacing[0];
+        column_mm = spacing[1];
+        frames.push_back({f, {p[0], p[1], p[2]}});
     }
     if (frames.size() < 2)
         throw InputError(file, "holds " + counted(static_cast<long long>(frames.size()), "frame") + " of this segment",

@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "planning_io/dicom/rt_struct.h"
 #include "planning_io/plan/contour_stack.h"
@@ -31,7 +30,7 @@ constexpr const char* kExportAgain = "Export the ROI with contours on every slic
 std::vector<Loop> loops_of(const RtRoi& roi, const fs::path& file) {
     std::vector<Loop> loops;
     for (const RtContour& contour : roi.contours) {
-        if (contour.type != "CLOSED_PLANAR" || contour.numbers.size() < 9) continue;
+        if (!is_closed(contour) || contour.numbers.size() < 9) continue;
         Loop loop;
         for (std::size_t i = 0; i + 2 < contour.numbers.size(); i += 3) {
             loop.emplace_back(contour.numbers[i], contour.numbers[i + 1], contour.numbers[i + 2]);
@@ -63,20 +62,6 @@ void draw(MaskStack& mask, const Loop& loop, int slice, const Vector3d& low) {
                 mask.inside[(static_cast<std::size_t>(slice) * rows + j) * columns + i] ^= 1;
     }
 }
-
-/// What a radiotherapy system draws beside organs, by its type (DICOM PS3.3 C.8.8.8): every way in goes through it.
-const std::map<std::string, std::string> kNoRisk{{"EXTERNAL", "the outline of the patient"},
-                                                 {"PTV", "what is to be treated"},
-                                                 {"CTV", "what is to be treated"},
-                                                 {"GTV", "what is to be treated"},
-                                                 {"TREATED_VOLUME", "what is to be treated"},
-                                                 {"IRRAD_VOLUME", "what is irradiated"},
-                                                 {"BOLUS", "a bolus"},
-                                                 {"SUPPORT", "a support"},
-                                                 {"FIXATION", "a fixation"},
-                                                 {"REGISTRATION", "for registration only"},
-                                                 {"ISOCENTER", "an isocentre"},
-                                                 {"MARKER", "a marker"}};
 
 MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::path& file) {
     const auto refuse = [&](const std::string& problem) {
@@ -154,9 +139,9 @@ std::vector<RiskStructure> read_roi_solids(const fs::path& file, const PlanImpor
     check_frame_of_reference(set.frame_of_reference_uid, settings, file, notes);
     std::vector<RiskStructure> solids;
     for (const RtRoi& roi : set.rois) {
-        if (const auto what = kNoRisk.find(roi.interpreted_type); what != kNoRisk.end()) {
+        if (const std::string what = no_organ(roi); !what.empty()) {
             notes.push_back(fmt::format("{}: ROI \"{}\" is {} ({}) and is left out of the risk structures",
-                                        file.filename().string(), roi.name, what->second, roi.interpreted_type));
+                                        file.filename().string(), roi.name, what, roi.interpreted_type));
             continue;
         }
         auto loops = loops_of(roi, file);

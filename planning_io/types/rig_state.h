@@ -74,6 +74,7 @@ struct RigState {
     RigCalibration rig;                              ///< as found
     std::array<DeviceFinding, kRigDevices> devices;  ///< by RigDevice
     std::vector<RigDoubt> doubts;
+    double accepted_movement_mm = 0;  ///< the patient moved so far in that scan, and a person took it all the same
     double hidden_light_mm = 0;  ///< how far off the light may be without a sign of it, over the scanned surface, 95 %
 
     /// Something moved: `rig` is not rig.json.

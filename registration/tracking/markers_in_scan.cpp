@@ -11,6 +11,7 @@ namespace {
 
 struct Look {
     std::string name;
+    double when = 0;  ///< as a share of the scan
     RigidTransform rig_from_patient;
 };
 
@@ -24,7 +25,7 @@ std::vector<Look> looks_of(const ScanCapture& capture, PatientTracker& tracker) 
         frame.at = capture.began + from_seconds(moment.when * lasted_s);
         if (looks.empty() && tracker.markers().empty()) tracker.set_reference(frame);
         const TrackedPose pose = tracker.update(frame);
-        if (pose.rig_from_patient) looks.push_back({moment.name, *pose.rig_from_patient});
+        if (pose.rig_from_patient) looks.push_back({moment.name, moment.when, *pose.rig_from_patient});
     }
     return looks;
 }
@@ -77,6 +78,8 @@ ScanMovement movement_of_markers(const ScanCapture& capture, const RigCalibratio
     movement.markers = static_cast<int>(tracker.markers().size());
     if (looks.size() < 2) return movement;
     movement.by = ScanMovement::By::markers;
+    movement.throughout = 2 * looks.size() >= uniform_light_frames(capture).size() && looks.front().when < 1.0 / 3 &&
+                          looks.back().when > 2.0 / 3;
     std::vector<Places> markers;
     for (const PatientMarker& marker : tracker.markers()) markers.push_back(places_of(marker, looks));
     // Of a head that lies still, too, the greatest of a hundred pairs is twice what is usual and more.
@@ -98,9 +101,11 @@ ScanMovement movement_of_markers(const ScanCapture& capture, const RigCalibratio
 
 ScanMovement movement_in_scan(const ScanCapture& capture, const RigCalibration& rig, const PointCloud& cloud,
                               const TrackingSettings& settings) {
-    const ScanMovement movement = movement_of_markers(capture, rig, settings);
-    if (movement.by == ScanMovement::By::markers) return movement;
-    return movement_in_pictures(capture, mm_per_pixel(cloud, rig.left_camera), mm_per_pixel(cloud, rig.right_camera));
+    ScanMovement movement = movement_of_markers(capture, rig, settings);
+    if (movement.throughout) return movement;
+    ScanMovement of_skin =
+        movement_in_pictures(capture, mm_per_pixel(cloud, rig.left_camera), mm_per_pixel(cloud, rig.right_camera));
+    return movement.way_mm() > of_skin.way_mm() ? movement : of_skin;
 }
 
 }  // namespace planlight

@@ -14,7 +14,8 @@ namespace planlight {
 ScanMovement movement_of_markers(const ScanCapture& capture, const RigCalibration& rig,
                                  const TrackingSettings& settings = {});
 
-/// By the markers where they can be measured, else by the skin in the pictures.
+/// By the markers where they are measured all through the scan. Else by the skin in the pictures, unless the markers
+/// moved more as far as they were seen.
 ScanMovement movement_in_scan(const ScanCapture& capture, const RigCalibration& rig, const PointCloud& cloud,
                               const TrackingSettings& settings = {});
 

@@ -63,6 +63,15 @@ TEST(RigOfAMatch, DecidesWhetherItMayBeUsed) {
     EXPECT_EQ(match_with(std::nullopt).verdict, Verdict::yes) << "the cloud of another scanner";
 }
 
+TEST(RigOfAMatch, AsksWhereTheScanIsOfAPatientWhoMoved) {
+    RigState state = a_state(RigState::Verdict::as_calibrated);
+    state.accepted_movement_mm = 0.8;
+    const RegistrationResult match = match_with(state);
+    EXPECT_EQ(match.verdict, Verdict::ask);
+    ASSERT_EQ(match.reasons.size(), 1u);
+    EXPECT_NE(match.reasons[0].find("moved by 0.8 mm during the scan"), std::string::npos);
+}
+
 /// Pictures that are read with another period than they were made with look like a zoom, all of one scan.
 TEST(RigOfAMatch, AsksWhereTheProjectorSeemsToHaveZoomed) {
     RigState state = a_state(RigState::Verdict::corrected);

@@ -163,8 +163,6 @@ TEST_F(OverlayTest, TheEndOfTheLoopIsDark) {
     EXPECT_FALSE(projector.lit);
 }
 
-// T_global = T_cur T_ini, and not the other way round: a patient that lies turned and is then turned again about
-// another axis.
 TEST_F(OverlayTest, IsAsBrightAsItIsSaid) {
     OverlayLoop loop(projector, clock, renderer, drawing, registration, {});
     const auto brightest = [&] {
@@ -179,6 +177,8 @@ TEST_F(OverlayTest, IsAsBrightAsItIsSaid) {
     EXPECT_EQ(brightest(), all);
 }
 
+// T_global = T_cur T_ini, and not the other way round: a patient that lies turned and is then turned again about
+// another axis.
 TEST_F(OverlayTest, DrawsForTheInitialPoseFirstAndTheMovementAfterIt) {
     const Eigen::AngleAxisd lies(0.4, Vector3d::UnitZ()), turns(0.1, Vector3d::UnitX());
     registration.patient_from_ct = Eigen::Translation3d(0, 0, 700) * RigidTransform(lies);

@@ -25,28 +25,68 @@ double saturated_share(const GrayImage& white, const GrayImage& black) {
     return lit == 0 ? 0 : static_cast<double>(full) / static_cast<double>(lit);
 }
 
-/// Throws where the codes of what both exposures decoded differ by more than their noise: the surface lies elsewhere.
-void check_one_pose(const LargeArray<float>& code, const LargeArray<float>& other, const DecodedView& view,
-                    const DecodedView& other_view) {
-    constexpr std::size_t kEnough = 1000;
+/// By how much two codes of one pose may differ in the median, projector pixels.
+float most_apart_px(std::vector<float> sigma, std::vector<float> other_sigma) {
     constexpr float kMost_px = 0.1F;  // about 0.15 mm of depth in both rooms
-    std::vector<float> off, sigma, other_sigma;
-    for (std::size_t i = 0; i < code.size(); ++i) {
-        if (std::isnan(code[i]) || std::isnan(other[i])) continue;
-        off.push_back(std::abs(code[i] - other[i]));
-        sigma.push_back(view.sigma_px[i]);
-        other_sigma.push_back(other_view.sigma_px[i]);
-    }
-    if (off.size() < kEnough) return;
-    const float a = median(sigma), b = median(other_sigma), median_px = median(off);
+    const float a = median(std::move(sigma)), b = median(std::move(other_sigma));
     // Half of all differences lie within 0.67 sigma; Gray codes of different cells also differ by their roundings.
     constexpr float kCells_px = 0.2F;
     const float rounding_px = std::max(a, b) > kCells_px ? 1.5F * std::abs(a - b) : 0;
-    if (median_px <= kMost_px + 0.67F * std::hypot(a, b) + rounding_px) return;
-    throw CheckFailedError(
-        fmt::format("the exposures are not of one pose: their light differs by {:.2f} projector pixels in the median",
-                    median_px),
-        "Scan again; the patient and the rig must rest from the first exposure to the last.");
+    return kMost_px + 0.67F * std::hypot(a, b) + rounding_px;
+}
+
+/// What both exposures decoded of a part of the picture.
+struct Difference {
+    std::vector<float> off, sigma, other_sigma;
+    void add(float apart, float s, float other) {
+        off.push_back(apart);
+        sigma.push_back(s);
+        other_sigma.push_back(other);
+    }
+};
+
+/// Throws where the codes of what both exposures decoded differ by more than their noise: the surface lies elsewhere.
+/// All of it is asked, and each small part: a head may move on a pillow that rests.
+void check_one_pose(const LargeArray<float>& code, const LargeArray<float>& other, const DecodedView& view,
+                    const DecodedView& other_view) {
+    constexpr std::size_t kEnough = 1000, kEnoughOfTile = 100;
+    constexpr int kTile_px = 16;
+    constexpr double kMostTiles = 0.1;
+    const char* const scan_again = "Scan again; the patient and the rig must rest from the first exposure to the last.";
+    const int across = (view.width + kTile_px - 1) / kTile_px, down = (view.height + kTile_px - 1) / kTile_px;
+    Difference all;
+    std::vector<Difference> tiles(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
+    for (std::size_t i = 0; i < code.size(); ++i) {
+        if (std::isnan(code[i]) || std::isnan(other[i])) continue;
+        const float apart = std::abs(code[i] - other[i]);
+        const auto x = i % static_cast<std::size_t>(view.width), y = i / static_cast<std::size_t>(view.width);
+        all.add(apart, view.sigma_px[i], other_view.sigma_px[i]);
+        tiles[y / kTile_px * static_cast<std::size_t>(across) + x / kTile_px].add(apart, view.sigma_px[i],
+                                                                                  other_view.sigma_px[i]);
+    }
+    if (all.off.size() < kEnough) return;
+    const float median_px = median(all.off);
+    if (median_px > most_apart_px(std::move(all.sigma), std::move(all.other_sigma)))
+        throw CheckFailedError(
+            fmt::format(
+                "the exposures are not of one pose: their light differs by {:.2f} projector pixels in the median",
+                median_px),
+            scan_again);
+    double asked = 0, elsewhere = 0;
+    std::vector<float> apart_px;
+    for (Difference& tile : tiles) {
+        if (tile.off.size() < kEnoughOfTile) continue;
+        ++asked;
+        const float px = median(std::move(tile.off));
+        if (px <= most_apart_px(std::move(tile.sigma), std::move(tile.other_sigma))) continue;
+        ++elsewhere;
+        apart_px.push_back(px);
+    }
+    if (elsewhere > kMostTiles * asked)
+        throw CheckFailedError(fmt::format("the exposures are not of one pose: over {:.0f} % of what both see their "
+                                           "light differs, by {:.2f} projector pixels in the median",
+                                           100 * elsewhere / asked, median(apart_px)),
+                               scan_again);
 }
 
 /// How much dimmer the projector's light is in the other exposure: the median over what both decoded; 1 where that is

@@ -10,7 +10,8 @@ namespace planlight {
 /// kept, so a pixel that saturates takes the darker exposure and a dark one the brighter. Of the pixels that no
 /// exposure decodes the counts by reason are those of the exposure with the fewest. Throws std::invalid_argument when
 /// sizes or directions differ, CheckFailedError where the codes that both know differ by more than their noise and a
-/// tenth of a projector pixel (median): the patient moved between them.
+/// tenth of a projector pixel (median; of all, or of more than a tenth of the small parts of the picture): the patient
+/// moved between them.
 void take_better(DecodedView& view, const DecodedView& other);
 
 /// A scan from several captures of the same pose at different exposures or brightnesses, at least one. Each must be

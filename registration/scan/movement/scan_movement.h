@@ -17,6 +17,7 @@ struct ScanMovement {
     std::string from, to;  ///< names of the pictures at those moments
     int moments = 0;       ///< looked at
     int markers = 0;
+    bool throughout = false;  ///< by markers: seen in half of the moments, from the first third to the last
     double light_change = 0;  ///< largest between two moments of one kind (fringes; others) or two pictures of one, as
                               ///< a share; by pictures only
     double camera_gamma = 1;  ///< what was taken out of the pictures; by pictures only

@@ -172,7 +172,7 @@ int run(const std::string& monitor_name, const Monitor& monitor) {
     const bool faults = number_from("FAULTS", 0) != 0;
     for (int press = 0; press < presses; ++press) {
         const Goal goal = any_goal(random);
-        const auto give_up = std::chrono::steady_clock::now() + 15s;
+        const auto give_up = std::chrono::steady_clock::now() + (slow ? 120s : 15s);
         auto until = give_up;
         while (std::chrono::steady_clock::now() < until) {
             const OperatorModel model = session.model();

@@ -47,6 +47,7 @@ void expect_same(const RigState& a, const RigState& b) {
     ASSERT_EQ(a.doubts.size(), b.doubts.size());
     EXPECT_EQ(a.doubts[0].by[0], b.doubts[0].by[0]);
     EXPECT_EQ(a.hidden_light_mm, b.hidden_light_mm);
+    EXPECT_EQ(a.accepted_movement_mm, b.accepted_movement_mm);
 }
 
 PointCloud a_cloud() {

@@ -92,6 +92,8 @@ TEST_F(PlanImportTest, FcsvPointsStandWhereSlicerPutsThem) {
             .plan;
     EXPECT_EQ(quoted.boreholes[0].name, "a, \"b\"");
     EXPECT_EQ(quoted.boreholes[1].name, "b-2");
+    const Plan marked = import_plan(write("c.fcsv", "\xEF\xBB\xBF" + fcsv("4.11", "LPS", row))).plan;
+    EXPECT_EQ(marked.boreholes.at(0).position_in_ct, Vector3d(10, 20, 30)) << "Notepad's mark of UTF-8 before it";
 }
 
 TEST_F(PlanImportTest, FcsvThatDoesNotSayWhereItIsIsRefused) {

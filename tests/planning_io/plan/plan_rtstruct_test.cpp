@@ -6,6 +6,7 @@
 #include "planning_io/plan/plan_rtstruct.h"
 #include "planning_io/types/error.h"
 #include "tests/planning_io/plan_facts.h"
+#include "tests/planning_io/rt_struct_bytes.h"
 #include "tests/support/test_data.h"
 
 namespace planlight {
@@ -124,6 +125,71 @@ TEST(PlanRtStruct, RealFilesAreReadOrRefusedWithTheReason) {
     for (const auto& note : read.notes) notes += note + "\n";
     EXPECT_NE(notes.find("ROI \"Areola\" has no contours"), std::string::npos) << notes;
     EXPECT_NE(notes.find("ROI \"BODY\" has contours at 98 heights: a solid"), std::string::npos) << notes;
+}
+
+/// What others write, in the frame of reference of the CT.
+PlanImport imported(const std::vector<test::WrittenRoi>& rois, const std::vector<std::string>& frames = {}) {
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "set.dcm";
+    write_safely(file, test::rt_struct_of(rois, frames));
+    return import_plan(file, {{}, "1.2.3"});
+}
+
+const std::string kLine = "12.9\\-103.9\\55.5\\22.9\\-103.7\\56";
+const test::WrittenRoi kCut{"Cut", {test::contour_saying("OPEN_NONPLANAR", 2, kLine)}};
+
+test::DicomBytes square(double z, const std::string& type = "CLOSED_PLANAR") {
+    return test::closed_contour({{0, -100, z}, {8, -100, z}, {8, -92, z}, {0, -92, z}}, type);
+}
+
+// A decimal comma would cut each number: light a millimetre towards the scanner's middle.
+TEST(PlanRtStruct, ACoordinateThatIsNoNumberIsRefusedByItsRoiAndWord) {
+    ASSERT_EQ(imported({kCut}).plan.osteotomy_lines.at(0).points_in_ct.at(0), Eigen::Vector3d(12.9, -103.9, 55.5));
+    for (const std::string word : {"12,9", "", "abc", "1.2 mm", "1e"}) {
+        const std::string numbers = word + kLine.substr(kLine.find('\\'));
+        try {
+            imported({{"Cut", {test::contour_saying("OPEN_NONPLANAR", 2, numbers)}}});
+            ADD_FAILURE() << "taken: " << numbers;
+        } catch (const InputError& e) {
+            EXPECT_NE(std::string(e.what()).find("ROI \"Cut\" has \"" + word + "\" where a number should stand"),
+                      std::string::npos)
+                << e.what();
+        }
+    }
+}
+
+// Of a plan of a radiotherapy system: markers on the skin, the isocentre and lenses are nothing to be drilled or cut.
+TEST(PlanRtStruct, WhatIsNoPlanByItsTypeIsLeftOutAndSaid) {
+    const test::WrittenRoi marker{"BB1", {test::contour_saying("POINT", 1, "1\\-100\\5")}, "MARKER"},
+        centre{"ISO", {test::contour_saying("POINT", 1, "1\\-30\\5")}, "ISOCENTER"},
+        lens{"Lens_L", {square(10), square(13)}, "ORGAN"};
+    const PlanImport read = imported({kCut, marker, centre, lens});
+    EXPECT_EQ(read.plan.osteotomy_lines.size(), 1U);
+    EXPECT_TRUE(read.plan.boreholes.empty());
+    ASSERT_EQ(read.notes.size(), 3U);
+    EXPECT_NE(read.notes[0].find("ROI \"BB1\" is a marker by its type (MARKER)"), std::string::npos) << read.notes[0];
+    EXPECT_NE(read.notes[1].find("an isocentre"), std::string::npos) << read.notes[1];
+    EXPECT_NE(read.notes[2].find("at 2 heights: a solid"), std::string::npos) << read.notes[2];
+    // A person's word goes before the type; what has none of either is drawn.
+    test::WrittenRoi said = marker;
+    said.description = "kind=borehole diameter_mm=7";
+    EXPECT_EQ(imported({said}).plan.boreholes.at(0).diameter_mm, 7);
+    EXPECT_EQ(imported({{"Hole", marker.contours}}).plan.boreholes.size(), 1U);
+    EXPECT_EQ(imported({{"Two cuts", lens.contours}}).plan.osteotomy_lines.size(), 2U);
+}
+
+TEST(PlanRtStruct, ASolidWithHolesIsASolid) {
+    const std::string type = "CLOSEDPLANAR_XOR";
+    const PlanImport read = imported({kCut, {"Mandible", {square(10, type), square(13, type), square(16, type)}}});
+    EXPECT_EQ(read.plan.osteotomy_lines.size(), 1U);
+    ASSERT_EQ(read.notes.size(), 1U);
+    EXPECT_NE(read.notes[0].find("at 3 heights: a solid"), std::string::npos) << read.notes[0];
+}
+
+// An MR that was registered to the CT stands in the list as well, before or behind it.
+TEST(PlanRtStruct, TheFrameOfItsRoisCountsWhateverElseIsListed) {
+    for (const auto& frames : {std::vector<std::string>{"1.2.3", "9.9"}, {"9.9", "1.2.3"}})
+        EXPECT_EQ(imported({kCut}, frames).plan.osteotomy_lines.size(), 1U) << frames[0];
 }
 
 TEST(PlanRtStruct, DcmtkReadsWhatIsWritten) {

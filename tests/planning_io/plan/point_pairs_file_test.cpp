@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "planning_io/files/safe_write.h"
 #include "planning_io/plan/point_pairs_file.h"
 #include "planning_io/types/error.h"
 #include "tests/support/test_data.h"
@@ -26,6 +27,16 @@ TEST(PointPairsFile, ReadsBackAndRefusesNamesThatBreakTheTable) {
     EXPECT_THROW(write_point_pairs({{"a,b", {0, 0, 0}, {0, 0, 0}}}, file), InputError);
     EXPECT_THROW(write_point_pairs({{"# SPACE=RAS", {0, 0, 0}, {0, 0, 0}}}, file), InputError);
     EXPECT_EQ(read_point_pairs(file).size(), 2u) << "a refused write leaves what was there";
+}
+
+// As Notepad and Excel write it: the mark is none of its columns.
+TEST(PointPairsFile, AMarkOfUtf8BeforeItChangesNothing) {
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "pairs.csv";
+    write_point_pairs({{"nasion", {1, -2, 3}, {4, 5, 6}}}, file);
+    const std::string table = read_whole(file);
+    write_safely(file, "\xEF\xBB\xBF" + table);
+    EXPECT_EQ(read_point_pairs(file).size(), 1u);
 }
 
 }  // namespace

@@ -139,6 +139,26 @@ TEST(MarkersInScan, ATurnIsAMovement) {
     EXPECT_GT(movement.moved_mm, 0.15) << "0.3 degrees at 80 mm are 0.4 mm";
 }
 
+// A hand or a drape comes over the markers: what they said before it is not how the patient lay.
+TEST(MarkersInScan, OnesThatAreSeenAtTheBeginningAloneDoNotSayThatThePatientLayStill) {
+    const RigCalibration rig = paper_rig();
+    const auto at = [](double share) { return RigidTransform(Eigen::Translation3d(share > 0.5 ? 2 : 0, 0, 0)); };
+    ScanCapture capture = capture_of(rig, at);
+    EXPECT_TRUE(movement_of_markers(capture, rig).throughout);
+    const ScanCapture without = capture_of(rig, at, false);
+    for (std::size_t k = 6; k < capture.left.size(); ++k)
+        capture.left[k] = without.left[k], capture.right[k] = without.right[k];
+    const ScanMovement of_markers = movement_of_markers(capture, rig);
+    ASSERT_EQ(of_markers.by, ScanMovement::By::markers);
+    EXPECT_LT(of_markers.moved_mm, 0.06);
+    EXPECT_FALSE(of_markers.throughout);
+    PointCloud skin;
+    skin.points_in_rig = {head_centre()};
+    const ScanMovement movement = movement_in_scan(capture, rig, skin);
+    EXPECT_FALSE(movement.by == ScanMovement::By::markers && movement.throughout);
+    EXPECT_TRUE(movement.by != ScanMovement::By::pictures || movement.way_mm() > 0.5) << movement.way_mm();
+}
+
 TEST(MarkersInScan, WithoutMarkersOrASecondCameraItIsNotKnown) {
     const RigCalibration rig = paper_rig();
     const auto rest = [](double) { return RigidTransform::Identity(); };

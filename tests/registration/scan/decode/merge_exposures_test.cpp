@@ -123,6 +123,29 @@ TEST(MergeExposures, APatientWhoMovedBetweenThemIsRefused) {
     }
 }
 
+// The pillow rests and is most of what is seen.
+TEST(MergeExposures, AHeadThatMovedOnAPillowThatRestsIsRefused) {
+    const auto room_of = [](const Eigen::Vector3d& way, double white_grey, unsigned seed) {
+        Room room = paper_room(nearest_of({sphere(kCentre + way, 80), plane({0, 0, 400}, {0, 0, -1})}));
+        room.light.white_grey = white_grey;
+        room.light.seed = seed;
+        return room;
+    };
+    const Room bright = room_of({0, 0, 0}, 250, 1);
+    const ScanCapture first = capture(bright, stripes_of(bright));
+    const auto merged = [&](const Eigen::Vector3d& way) {
+        const Room dim = room_of(way, 60, 9);
+        return scan_from_exposures(std::vector<ScanCapture>{first, capture(dim, stripes_of(dim))}, rig_of(bright));
+    };
+    EXPECT_NO_THROW(merged({0, 0, 0}));
+    for (const Eigen::Vector3d& way : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(3, 0, 0)}) try {
+            merged(way);
+            ADD_FAILURE() << "two poses were merged, apart by " << way.transpose();
+        } catch (const CheckFailedError& e) {
+            EXPECT_NE(std::string(e.what()).find("% of what both see"), std::string::npos) << e.what();
+        }
+}
+
 TEST(MergeExposures, TheOrderDoesNotMatterAndOneIsItself) {
     const Room bright = glaring_room(350), dim = glaring_room(60);
     const DecodedView a = decode_stripes(photograph(bright, bright.left, stripes_of(bright), 1), stripes_of(bright)),
