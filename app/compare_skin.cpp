@@ -1,5 +1,7 @@
 #include "app/compare_skin.h"
 
+#include <cmath>
+
 #include "planning_io/plan/plan_file.h"
 #include "projection/light_gate.h"
 #include "registration/matching/refine_pose_deformable.h"
@@ -26,7 +28,7 @@ void compare_skin(const PointCloud& cloud, const Case& the_case, const Registrat
     const RigidTransform seen = found.ct_from_rig.inverse();
     for (const Eigen::Vector3d& p : points_of(the_case.plan)) {
         const double off_mm = (seen * p - rig_from_ct * p).norm();
-        if (off_mm < check.off_mm) continue;
+        if (off_mm < check.off_mm || std::isnan(check.off_mm)) continue;
         check.off_mm = off_mm;
         check.bound_mm = predicted_error(found.covariance, p).bound_95_mm;
     }
@@ -34,7 +36,7 @@ void compare_skin(const PointCloud& cloud, const Case& the_case, const Registrat
                      check.residual_mm > match.residual_median_mm + max_more_residual_mm;
     const bool tells = check.bound_mm <= stop_mm || check.bound_mm < check.off_mm;
     check.elsewhere = check.off_mm > stop_mm ? !tells : far;
-    check.known = tells && !check.elsewhere;
+    check.known = tells && !check.elsewhere && std::isfinite(check.off_mm);
     if (check.known) check.why_not.clear();
     if (check.elsewhere) check.why_not = "the skin does not lie where the markers put it";
     if (!check.known) check.off_mm = 0;

@@ -252,6 +252,7 @@ void Session::start_overlay() {
     watch_.emplace(rig_, settings_.light_cause);
     jumps_.emplace(rig_);
     shown_.clear();
+    counts_shown_ = {};
     seen_until_ = clock_.now();
     lit_since_ = Instant::max();
 }
@@ -337,9 +338,11 @@ void Session::note_shown(const OverlayStep& overlay) {
     if (!overlay.lit) {
         lit_since_ = Instant::max();
         shown_.clear();
+        counts_shown_ = {};
         return;
     }
     if (lit_since_ == Instant::max()) lit_since_ = overlay.lit_from + found_delay_;
+    counts_shown_ = overlay.counts;
     shown_.push_back({overlay.lit_from + found_delay_, overlay.rig_from_ct});
     if (shown_.size() > kKept) shown_.erase(shown_.begin());
 }
@@ -387,7 +390,9 @@ std::optional<LightCheck> Session::look_at_light(const Update& update) {
     if (settings_.check_light_every <= 0 || ++updates_ % settings_.check_light_every != 0) return std::nullopt;
     const Instant half = update.frame.exposure / 2;
     if (!update.pose.rig_from_patient || update.frame.at - half < lit_since_) return std::nullopt;
-    return checker_->look(*update.pose.rig_from_patient * registration_->patient_from_ct, update.frame);
+    LightCheck check = checker_->look(*update.pose.rig_from_patient * registration_->patient_from_ct, update.frame);
+    note_lit_items(counts_shown_, check);
+    return check;
 }
 
 }  // namespace planlight

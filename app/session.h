@@ -248,6 +248,7 @@ private:
     std::optional<PictureJumps> jumps_;
     LightBrightness brightness_;
     std::vector<ShownPicture> shown_;
+    RenderCounts counts_shown_;  ///< of the last picture
     Instant found_delay_{};
     Instant seen_until_{};                  ///< end of the last exposure that was used
     Instant seen_at_{}, frame_interval_{};  ///< its middle, and between two; 0: not known

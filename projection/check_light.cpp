@@ -10,6 +10,7 @@
 #include "projection/figure_patch.h"
 #include "projection/find_light.h"
 #include "projection/light_depth.h"
+#include "projection/render_drawing.h"
 #include "projection/stroke_places.h"
 
 namespace planlight {
@@ -245,13 +246,17 @@ struct LightChecker::Parts {
     std::vector<std::optional<StrokePlace>> apart;  ///< of each item without a segment, a place on it
     std::vector<StrokeSegment> segments;
     std::vector<FigurePatch> patches;
-    std::vector<Sight> sights;  ///< of the segments, then of the patches
+    std::vector<StrokeSegment> crowded;  ///< beside another item's light: nobody looks, but they are lit
+    std::vector<Sight> sights;           ///< of the segments, then of the patches, then of the crowded
+    std::optional<std::size_t> bright_item{};
     std::size_t turn = 0;
     int frame = 0;
     bool nothing_far = false;  ///< by the last search of all the light as one
     bool passed_over = false;  ///< that search was left out in the last look
     std::optional<RigidTransform> last{};
 
+    bool dim(int item) const { return bright_item && item != static_cast<int>(*bright_item); }
+    const StrokeSegment& sighted(std::size_t i) const;  ///< what `sights[i]` is of
     Sight sight_of(const StrokeSegment& segment, const RigidTransform& rig_from_ct) const;
     void look_around(const RigidTransform& rig_from_ct);
     void look_at(const FigurePatch& patch, const Sight& sight, const RigidTransform& rig_from_ct,
@@ -259,6 +264,12 @@ struct LightChecker::Parts {
                  std::vector<LookedAt>& looked) const;
     std::optional<double> far_light(const RigidTransform& rig_from_ct, const StereoFrame& pictures) const;
 };
+
+const StrokeSegment& LightChecker::Parts::sighted(std::size_t i) const {
+    if (i < segments.size()) return segments[i];
+    i -= segments.size();
+    return i < patches.size() ? patches[i].extent : crowded[i - patches.size()];
+}
 
 Sight LightChecker::Parts::sight_of(const StrokeSegment& segment, const RigidTransform& rig_from_ct) const {
     const auto free = [&](const CameraModel& device, double steepest) {
@@ -286,7 +297,7 @@ void LightChecker::Parts::look_around(const RigidTransform& rig_from_ct) {
     const int parts = std::max(1, settings.look_again_every);
     for (std::size_t i = 0; i < sights.size(); ++i)
         if (!sights[i].known || static_cast<int>(i) % parts == frame % parts)
-            sights[i] = sight_of(i < segments.size() ? segments[i] : patches[i - segments.size()].extent, rig_from_ct);
+            sights[i] = sight_of(sighted(i), rig_from_ct);
     ++frame;
 }
 
@@ -307,7 +318,8 @@ std::optional<double> LightChecker::Parts::far_light(const RigidTransform& rig_f
                                                      const StereoFrame& pictures) const {
     std::vector<SightedSegment> lit;
     for (std::size_t i = 0; i < segments.size(); ++i)
-        if (sights[i].measurable && !segments[i].tick) lit.push_back({&segments[i], sights[i].seen});
+        if (sights[i].measurable && !segments[i].tick && !dim(segments[i].item))
+            lit.push_back({&segments[i], sights[i].seen});
     for (std::size_t i = 0; i < patches.size(); ++i)
         for (const StrokeSegment& piece : patches[i].outline)
             if (sights[segments.size() + i].measurable)
@@ -316,18 +328,20 @@ std::optional<double> LightChecker::Parts::far_light(const RigidTransform& rig_f
 }
 
 LightChecker::LightChecker(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,
-                           const CheckLightSettings& settings, std::optional<std::size_t> only_item)
-    : parts_(new Parts{skin, rig, settings, {}, {}, segments_of(drawing, settings), {}, {}}) {
-    parts_->patches = patches_of(drawing, skin, parts_->segments, settings, only_item);
+                           const CheckLightSettings& settings, std::optional<std::size_t> bright_item)
+    : parts_(new Parts{skin, rig, settings, {}, {}, segments_of(drawing, settings), {}, {}, {}}) {
+    parts_->bright_item = bright_item;
+    parts_->patches = patches_of(drawing, skin, parts_->segments, settings, bright_item);
+    parts_->crowded = crowded_segments_of(drawing, parts_->segments, settings);
     parts_->apart = places_of_items(drawing);
-    if (only_item) {
-        std::erase_if(parts_->segments, [&](const StrokeSegment& s) { return s.item != static_cast<int>(*only_item); });
-        for (std::size_t i = 0; i < parts_->apart.size(); ++i)
-            if (i != *only_item) parts_->apart[i].reset();
-    }
-    parts_->sights.resize(parts_->segments.size() + parts_->patches.size());
+    for (std::size_t i = 0; i < parts_->apart.size(); ++i)
+        if (parts_->dim(static_cast<int>(i))) parts_->apart[i].reset();
+    parts_->sights.resize(parts_->segments.size() + parts_->patches.size() + parts_->crowded.size());
     for (const StrokeSegment& segment : parts_->segments) parts_->apart[static_cast<std::size_t>(segment.item)].reset();
-    for (const DrawnItem& item : drawing.items) parts_->items.emplace_back().name = item.name;
+    for (const DrawnItem& item : drawing.items) {
+        parts_->items.emplace_back().name = item.name;
+        parts_->items.back().dim = parts_->dim(static_cast<int>(parts_->items.size() - 1));
+    }
 }
 LightChecker::~LightChecker() = default;
 LightChecker::LightChecker(LightChecker&&) noexcept = default;
@@ -342,7 +356,7 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
             p.apart[i] && freely_seen(*p.apart[i], p.skin, p.rig.projector, rig_from_ct, p.settings.steepest_lit);
     for (std::size_t i = 0; i < p.segments.size(); ++i)
         if (p.sights[i].lit) check.items[static_cast<std::size_t>(p.segments[i].item)].lit = true;
-    const auto segments = p.segments.size();
+    const std::size_t segments = p.segments.size(), crowded = segments + p.patches.size();
     const std::size_t most = std::max<std::size_t>(1, p.settings.most_segments);
     const std::size_t step = std::max<std::size_t>(1, (p.sights.size() + most - 1) / most);
     const RigidTransform ct_from_rig = rig_from_ct.inverse();
@@ -352,10 +366,11 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
     for (std::size_t i = p.turn++ % step; i < p.sights.size(); i += step) {
         const Sight& sight = p.sights[i];
         if (!sight.lit) continue;
-        const StrokeSegment& segment = i < segments ? p.segments[i] : p.patches[i - segments].extent;
-        const int counts = i >= segments ? 2 : segment.tick ? 0 : 1;
-        check.lit += counts;
+        const StrokeSegment& segment = p.sighted(i);
+        const int counts = i >= crowded ? 1 : i >= segments ? 2 : segment.tick ? 0 : 1;
+        if (!p.dim(segment.item)) check.lit += counts;
         check.items[static_cast<std::size_t>(segment.item)].lit_segments += counts;
+        if (i >= crowded) continue;
         if (i >= segments) {
             p.look_at(p.patches[i - segments], sight, rig_from_ct, frame, cameras_in_ct, looked);
             continue;
@@ -367,6 +382,7 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
     }
     join(looked, step, p.settings, check);
     sum_up_items(check, step, p.settings);
+    std::erase_if(check.segments, [&](const SeenSegment& s) { return p.dim(s.item); });
     sum_up(check);
     constexpr double kMostSeen = 0.8, kAside_mm = 1;  // else light is where it was looked for
     const bool missed = check.expected > 0 && (check.seen_share() < kMostSeen || check.off_mm > kAside_mm);
@@ -377,6 +393,12 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
         p.nothing_far = !check.far_mm;
     }
     return check;
+}
+
+void note_lit_items(const RenderCounts& shown, LightCheck& check) {
+    constexpr double kSome = 0.05;
+    for (std::size_t i = 0; i < std::min(check.items.size(), shown.items.size()); ++i)
+        check.items[i].lit = check.items[i].lit || shown.items[i].lit_share() > kSome;
 }
 
 LightCheck check_light(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,

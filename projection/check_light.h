@@ -51,8 +51,10 @@ struct SeenSegment {
 /// Where one item's light lies against the plan.
 struct ItemLight {
     std::string name;
-    bool lit = false;      ///< the projector's light reaches it; a camera may not see it, or not apart from other light
-    int lit_segments = 0;  ///< stretches of it that the projector lights
+    bool lit = false;  ///< the projector's light reaches it; a camera may not see it, or not apart from other light
+    bool dim =
+        false;  ///< it is lit dimly beside a bright one (`LightChecker`): that nothing is seen of it tells nothing
+    int lit_segments = 0;        ///< stretches of it that the projector lights
     int segments = 0, seen = 0;  ///< of these, what should be seen by a camera, and where light was found
     Eigen::Vector3d shift_in_ct = Eigen::Vector3d::Zero();  ///< of the light along the skin, mm
     double off_mm = 0;                                      ///< its length, in the directions that the strokes tell
@@ -96,23 +98,29 @@ struct LightCheck {
     double seen_share() const { return expected == 0 ? 0 : static_cast<double>(seen) / expected; }
 };
 
+struct RenderCounts;
+
+/// What the projector lit of each item in the picture that was looked at: of a figure at the light's edge a part is lit
+/// though the places that CHECK asks lie in the dark.
+void note_lit_items(const RenderCounts& shown, LightCheck& check);
+
 /// CHECK: the light of a drawing as both cameras see it, against where it belongs.
 ///
 /// Each stroke (labels are not asked) is predicted into the cameras; across it, in the tangent plane of the skin, the
 /// brightest ridge of the width of a stroke is looked for in the mean of some millimetres of stroke. Where the two
 /// cameras see an item's light apart, or that of a part of it, it lies on skin that is higher or lower than the
 /// drawing's, and so farther aside than either sees it. Stretches near another stroke are left out: their light could
-/// be that one's. Along a line the arms of its ticks tell. What all parties share cannot be seen: skin that slid over
-/// the bone, markers that moved on the head all together, an error common to CT and scan.
+/// be that one's; they count as lit, though. Along a line the arms of its ticks tell. What all parties share cannot be
+/// seen: skin that slid over the bone, markers that moved on the head all together, an error common to CT and scan.
 ///
-/// With `only_item`, an index into `PlanDrawing::items`, that one alone is asked, though the light of all others is in
-/// the drawing (dim, say): what lies near their strokes is left out as ever.
+/// With `bright_item`, an index into `PlanDrawing::items`, that one alone is lit in full and asked; the light of all
+/// others is dim: what is seen of it stands in their own `ItemLight` and nowhere else.
 ///
 /// Keeps references to skin and rig; which segment is seen by whom is kept from frame to frame.
 class LightChecker {
 public:
     LightChecker(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,
-                 const CheckLightSettings& settings = {}, std::optional<std::size_t> only_item = {});
+                 const CheckLightSettings& settings = {}, std::optional<std::size_t> bright_item = {});
     ~LightChecker();
     LightChecker(LightChecker&&) noexcept;
 

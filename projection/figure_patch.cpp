@@ -333,13 +333,13 @@ double px_per_mm(const FigurePatch& patch, const CameraModel& camera, const Rigi
 
 std::vector<FigurePatch> patches_of(const PlanDrawing& drawing, const SkinSurface& skin,
                                     const std::vector<StrokeSegment>& segments, const CheckLightSettings& settings,
-                                    std::optional<std::size_t> only_item) {
+                                    std::optional<std::size_t> bright_item) {
     std::vector<bool> told(drawing.items.size(), false);
     for (const StrokeSegment& segment : segments) told[static_cast<std::size_t>(segment.item)] = true;
     std::vector<FigurePatch> patches;
     for (std::size_t i = 0; i < drawing.items.size(); ++i) {
-        if (told[i] || (only_item && i != *only_item)) continue;
-        if (auto patch = patch_of(drawing, skin, static_cast<int>(i), only_item.has_value(), settings))
+        if (told[i] || (bright_item && i != *bright_item)) continue;
+        if (auto patch = patch_of(drawing, skin, static_cast<int>(i), bright_item.has_value(), settings))
             patches.push_back(std::move(*patch));
     }
     return patches;

@@ -30,11 +30,11 @@ struct FigurePatch {
 
 constexpr double kPatchStep_mm = 0.25;
 
-/// Of all items that have no segment, or of `only_item` where it has none. Left out: figures of more than 16 mm, those
-/// that reach over the skin's edge, and those half of which lies under a label.
+/// Of all items that have no segment, or of `bright_item` where it has none. Left out: figures of more than 16 mm,
+/// those that reach over the skin's edge, and those half of which lies under a label.
 std::vector<FigurePatch> patches_of(const PlanDrawing& drawing, const SkinSurface& skin,
                                     const std::vector<StrokeSegment>& segments, const CheckLightSettings& settings,
-                                    std::optional<std::size_t> only_item = {});
+                                    std::optional<std::size_t> bright_item = {});
 
 /// The figure's light as one camera sees it, along both sides: the shift at which the pattern correlates best with the
 /// picture (normalised, weighted), to `search_mm`; its noise by what the pattern leaves unexplained (Cramer-Rao). No

@@ -10,7 +10,7 @@ namespace planlight {
 namespace {
 
 std::string& stored_error() {
-    static std::string error;
+    thread_local std::string error;  // GLFW calls back on the thread that failed
     return error;
 }
 

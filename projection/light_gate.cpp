@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "projection/error_figure.h"
 
@@ -37,8 +38,8 @@ void LightGate::forget() {
 }
 
 void LightGate::skin_checked(double off_mm) {
-    skin_off_mm_ = off_mm;
-    if (off_mm > settings_.stop_mm) stopped_ = true;
+    skin_off_mm_ = std::isnan(off_mm) ? std::numeric_limits<double>::infinity() : off_mm;
+    if (skin_off_mm_ > settings_.stop_mm) stopped_ = true;
 }
 
 void LightGate::new_match() {
@@ -84,8 +85,13 @@ double LightGate::Item::part_off_mm() const {
 /// A look at which it was not an item's turn tells nothing of it; one that saw little of it, nothing of its place.
 void LightGate::take(Instant at, const ItemLight& seen, Item& item) const {
     item.name = seen.name;
-    if (seen.lit) item.lit_at = at;
+    item.dim = seen.dim;
+    if (seen.lit)
+        item.lit_at = at;
+    else
+        item.good = 0;  // what comes back into the light is measured anew
     std::erase_if(item.looks, [&](const Item::Look& look) { return !within_fresh(look.at, at); });
+    if (seen.dim && !seen.told()) return;
     item.looks.push_back({at, seen.lit_segments, seen.segments, seen.seen, seen.part_off_mm});
     if (seen.segments == 0) return;
     if (seen.seen >= settings_.least_seen_of_item * seen.segments) {
@@ -150,6 +156,7 @@ bool LightGate::faint(Instant at) const {
 
 bool LightGate::rule_on_item(const Item& item, Ruling& ruling) const {
     const Item::Look all = item.all();
+    if (item.dim && all.asked == 0) return false;
     if (all.asked == 0 || all.seen < settings_.least_seen_of_item * all.asked) {
         ruling.found_wrong = false;
         ruling.headline = fmt::format("LOOK: \"{}\" is not measured.", item.name);
@@ -169,7 +176,7 @@ bool LightGate::rule_on_item(const Item& item, Ruling& ruling) const {
         ruling.details = {"Look at it on the skin; if it stays so, scan again."};
         return true;
     }
-    if (all.asked < settings_.least_asked_of_item * all.lit) {
+    if (!item.dim && all.asked < settings_.least_asked_of_item * all.lit) {
         ruling.found_wrong = false;
         ruling.headline = fmt::format("LOOK: \"{}\" is measured in part only.", item.name);
         ruling.details = {fmt::format("The cameras can see about {:.0f} % of its light: look at the rest yourself.",
@@ -294,8 +301,9 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
             "Press \"Show landmarks\": they are lit one after the other for you to look at."};
         return ruling;
     }
-    const bool items_good = std::ranges::all_of(
-        items_, [&](const Item& item) { return !within_fresh(item.lit_at, at) || item.good >= settings_.green_after; });
+    const bool items_good = std::ranges::all_of(items_, [&](const Item& item) {
+        return item.dim || !within_fresh(item.lit_at, at) || item.good >= settings_.green_after;
+    });
     if (good_ < settings_.green_after || !items_good) {
         ruling.headline = "LOOK: the light is being measured.";
         return ruling;

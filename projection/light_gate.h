@@ -85,6 +85,7 @@ private:
             double part_off_mm = 0;            ///< `ItemLight::part_off_mm`
         };
         std::string name;
+        bool dim = false;  ///< `ItemLight::dim`
         Instant lit_at = Instant::min();
         std::vector<Look> looks;
         int good = 0;       ///< looks in a row that found it in its place

@@ -13,8 +13,8 @@
 namespace planlight {
 namespace {
 
-constexpr auto kPatience = std::chrono::seconds(1);
-constexpr auto kHangs = std::chrono::milliseconds(500);
+constexpr auto kToStart = std::chrono::seconds(5);
+constexpr auto kHangs = std::chrono::milliseconds(500);     ///< a picture that is not drawn by then
 constexpr auto kExpiryPoll = std::chrono::milliseconds(3);  ///< the injected clock can only be asked, not waited for
 
 const char* const kVertexShader =
@@ -113,8 +113,7 @@ PictureThread::PictureThread(GLFWwindow* window, int width, int height, const Cl
     wanted_ = 1;
     thread_ = std::thread([this] { run(); });
     std::unique_lock lock(mutex_);
-    if (drawn_changed_.wait_for(lock, 5 * kPatience, [&] { return drawn_ >= 1 || !failure_.empty(); }) &&
-        failure_.empty())
+    if (drawn_changed_.wait_for(lock, kToStart, [&] { return drawn_ >= 1 || !failure_.empty(); }) && failure_.empty())
         return;
     const std::string problem = failure_.empty() ? "the graphics driver does not answer" : failure_;
     stop_ = true;
@@ -141,12 +140,12 @@ void PictureThread::show(const RgbImage& picture, Instant valid_until) {
     lit_ = true;
     const std::uint64_t number = ++wanted_;
     wanted_changed_.notify_all();
-    if (drawn_within_a_second(lock, number)) return;
+    if (drawn_in_time(lock, number)) return;
     lit_ = false;
     picture_ = {};
     ++wanted_;
     wanted_changed_.notify_all();
-    throw failed(failure_.empty() ? "the picture was not drawn within a second" : failure_);
+    throw failed(failure_.empty() ? "the picture was not drawn within half a second" : failure_);
 }
 
 void PictureThread::go_dark() noexcept {
@@ -155,7 +154,7 @@ void PictureThread::go_dark() noexcept {
     picture_ = {};
     const std::uint64_t number = ++wanted_;
     wanted_changed_.notify_all();
-    if (!drawn_within_a_second(lock, number) && failure_.empty()) failure_ = "black was not drawn within a second";
+    if (!drawn_in_time(lock, number) && failure_.empty()) failure_ = "black was not drawn within half a second";
 }
 
 void PictureThread::check() {
@@ -185,8 +184,8 @@ bool PictureThread::dark() const {
     return !lit_ || clock_.now() >= valid_until_;
 }
 
-bool PictureThread::drawn_within_a_second(std::unique_lock<std::mutex>& lock, std::uint64_t number) {
-    return drawn_changed_.wait_for(lock, kPatience, [&] { return drawn_ >= number || !failure_.empty(); }) &&
+bool PictureThread::drawn_in_time(std::unique_lock<std::mutex>& lock, std::uint64_t number) {
+    return drawn_changed_.wait_for(lock, kHangs, [&] { return drawn_ >= number || !failure_.empty(); }) &&
            failure_.empty();
 }
 

@@ -24,10 +24,11 @@ public:
     PictureThread(const PictureThread&) = delete;
     PictureThread& operator=(const PictureThread&) = delete;
 
-    /// Returns when the picture has been handed to the display. Throws DeviceError when that fails or takes over a
-    /// second.
+    /// Returns when the picture has been handed to the display. Throws DeviceError when that fails or takes over
+    /// half a second: the light before it cannot expire meanwhile.
     void show(const RgbImage& picture, Instant valid_until);
-    /// Returns when black has been handed to the display, after a second at most; `check` says whether it has been.
+    /// Returns when black has been handed to the display, after half a second at most; `check` says whether it has
+    /// been.
     void go_dark() noexcept;
     /// Throws DeviceError when the thread could not draw what it should and has ended, black was not drawn in time, or
     /// nothing was drawn for half a second though something should be, an expired picture's black say: what the display
@@ -43,7 +44,7 @@ private:
     void run();
     void draw_what_is_wanted(Painter& painter);
     void wait_and_take(std::unique_lock<std::mutex>& lock);
-    bool drawn_within_a_second(std::unique_lock<std::mutex>& lock, std::uint64_t number);
+    bool drawn_in_time(std::unique_lock<std::mutex>& lock, std::uint64_t number);
 
     GLFWwindow* window_;
     int width_, height_;

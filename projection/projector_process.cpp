@@ -121,8 +121,9 @@ void ProjectorProcess::start(const std::string& monitor) {
 void ProjectorProcess::wait_until_ready() {
     const Instant until = clock_.now() + settings_.start_allowed;
     while (mailbox_.state() == LightMailbox::State::starting) {
-        if (waitpid(process_, nullptr, WNOHANG) == process_) {
+        if (waitpid(process_, nullptr, WNOHANG) != 0) {
             process_ = -1;
+            if (mailbox_.state() == LightMailbox::State::failed) break;  // it had said why
             throw DeviceError("Projector process", "it ended while it started",
                               "Update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1.");
         }
@@ -177,7 +178,7 @@ void ProjectorProcess::check() {
 void ProjectorProcess::check_locked() {
     if (process_ < 0) throw_ended("it has ended");
     if (mailbox_.state() == LightMailbox::State::failed) fail(mailbox_.problem(), mailbox_.remedy());
-    if (waitpid(process_, nullptr, WNOHANG) == process_) {
+    if (waitpid(process_, nullptr, WNOHANG) != 0) {  // also where the program that started us reaps its children itself
         process_ = -1;
         end();
         throw_ended("it was ended from outside, or crashed");

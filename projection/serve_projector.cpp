@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "planning_io/types/error.h"
+#include "planning_io/types/suspend_watch.h"
 #include "projection/projector_process.h"
 #include "projection/projector_window.h"
 
@@ -75,7 +76,11 @@ void follow(ProjectorWindow& window, LightMailbox& mailbox, int bell) {
     const Pulse pulse(mailbox);
     LightMailbox::Order order;
     mailbox.say_ready(window.width(), window.height(), window.monitor());
+    SuspendWatch suspend;
     do {
+        if (suspend.look())
+            throw DeviceError("Projector", "the computer was asleep",
+                              "Look at the light on landmarks before you use it, and switch the computer's sleep off.");
         mailbox.say_busy(clock.now());
         const bool ordered = mailbox.take(order);
         if (ordered && order.picture.empty()) window.go_dark();

@@ -42,6 +42,16 @@ public:
         return free_mm;
     }
 
+    /// The same of other items' strokes alone, whose light could be mistaken for this one's.
+    double free_of_items_mm(std::size_t stroke, const StrokePlace& at) const {
+        double free_mm = reach_mm_;
+        each_near(at.p_in_ct, [&](std::size_t other, const Vector3d& p) {
+            if (other == kLabel || drawing_.strokes[other].item == drawing_.strokes[stroke].item) return;
+            free_mm = std::min(free_mm, free_of_mm(other, p, stroke, at));
+        });
+        return free_mm;
+    }
+
 private:
     static constexpr std::size_t kLabel = static_cast<std::size_t>(-1);  // in place of a stroke's number
     static constexpr double kLabelLine_mm = 0.5;                         // what its outline is taken to be wide
@@ -172,6 +182,31 @@ std::vector<std::optional<StrokePlace>> places_of_items(const PlanDrawing& drawi
         places[item] = all[all.size() / 2];
     }
     return places;
+}
+
+std::vector<StrokeSegment> crowded_segments_of(const PlanDrawing& drawing, const std::vector<StrokeSegment>& segments,
+                                               const CheckLightSettings& settings) {
+    const StrokesNear near(drawing, settings.search_mm);
+    const auto most = static_cast<std::size_t>(std::max(1.0, settings.segment_mm / settings.spacing_mm));
+    std::vector<bool> told(drawing.items.size(), false);
+    for (const StrokeSegment& segment : segments) told[static_cast<std::size_t>(segment.item)] = true;
+    std::vector<StrokeSegment> crowded;
+    for (std::size_t s = 0; s < drawing.strokes.size(); ++s) {
+        const Stroke& stroke = drawing.strokes[s];
+        if (stroke.kind == StrokeKind::label || stroke.kind == StrokeKind::tick ||
+            stroke.kind == StrokeKind::check_mark || stroke.item < 0 || !told[static_cast<std::size_t>(stroke.item)])
+            continue;
+        StrokeSegment segment{stroke.item, false, {}, 0};
+        for (const StrokePlace& place : places_along(stroke, settings.spacing_mm)) {
+            if (!place.lit || near.free_of_items_mm(s, place) >= settings.least_search_mm) continue;
+            segment.places.push_back(place);
+            if (segment.places.size() < most) continue;
+            crowded.push_back(segment);
+            segment.places.clear();
+        }
+        if (2 * segment.places.size() > most) crowded.push_back(segment);
+    }
+    return crowded;
 }
 
 std::vector<StrokeSegment> segments_of(const PlanDrawing& drawing, const CheckLightSettings& settings) {

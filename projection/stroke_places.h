@@ -28,6 +28,11 @@ struct StrokeSegment {
 /// the profile.
 std::vector<StrokeSegment> segments_of(const PlanDrawing& drawing, const CheckLightSettings& settings);
 
+/// What `segments_of` leaves out because other items are lit too near, in segments of the same length: of items that
+/// have segments; the others are told whole (`patches_of`).
+std::vector<StrokeSegment> crowded_segments_of(const PlanDrawing& drawing, const std::vector<StrokeSegment>& segments,
+                                               const CheckLightSettings& settings);
+
 /// The places of a stroke, evenly along it.
 std::vector<StrokePlace> places_along(const Stroke& stroke, double spacing_mm);
 

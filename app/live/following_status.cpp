@@ -50,13 +50,15 @@ Status status_of(const Session& session, const Session::Update& update, const Li
                               ? "Read the card on the skin: is it this patient, and this side?"
                               : "The card with the patient's name cannot be lit whole: ask who the patient is.");
     if (const auto item = session.item_of_moment(); item && *item < session.drawing().items.size())
-        details.push_back(fmt::format("Only \"{}\" is bright; the rest of the plan is dim or dark.",
+        details.push_back(fmt::format("Only \"{}\" is bright and checked; the rest of the plan is dim or dark.",
                                       session.drawing().items[*item].name));
     const bool aligned = ruling.trust == LightTrust::aligned;
     Status status{aligned ? StatusKind::aligned : StatusKind::check, ruling.headline, details};
     const std::string hidden = sentence_of_hidden(session);
     if (!hidden.empty()) status.details.push_back(hidden);
     if (aligned && (partly_lit || !hidden.empty())) status.headline = "What is shown of the plan is on the skin.";
+    if (const auto item = session.item_of_moment(); aligned && item && *item < session.drawing().items.size())
+        status.headline = fmt::format("\"{}\" is on the skin.", session.drawing().items[*item].name);
     if (const std::string bare = sentence_of_bare(session); aligned && !session.item_of_moment() && !bare.empty())
         status.details.push_back(bare);
     return status;

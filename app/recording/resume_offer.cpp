@@ -90,14 +90,14 @@ ResumeOffer resume_offer(LastMatch last, const fs::path& recording, const Case& 
 }
 
 std::optional<LastSession> last_session(const fs::path& folder) {
-    constexpr auto kOldest = std::chrono::hours(12);
+    constexpr auto kOldest = std::chrono::hours(12), kAhead = std::chrono::minutes(1);  // the clock may be set back
     const auto now = fs::file_time_type::clock::now();
     std::vector<std::pair<fs::file_time_type, fs::path>> recordings;
     std::error_code fault;
     for (fs::directory_iterator entry(folder, fault), end; !fault && entry != end; entry.increment(fault)) {
         if (entry->path().extension() != ".plrec") continue;
         const auto at = fs::last_write_time(entry->path(), fault);
-        if (!fault && now - at <= kOldest) recordings.emplace_back(at, entry->path());
+        if (!fault && now - at <= kOldest && at - now <= kAhead) recordings.emplace_back(at, entry->path());
     }
     std::sort(recordings.rbegin(), recordings.rend());
     for (const auto& [at, recording] : recordings) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "projection/check_light.h"
+#include "projection/render_drawing.h"
 #include "tests/projection/lit_ball.h"
 #include "tests/projection/shapes.h"
 
@@ -71,6 +72,31 @@ TEST(SmallFigures, AreToldEachInBothDirections) {
             }
         }
     }
+}
+
+// At the edge of the projector's picture: of a hole that is lit by half the gate must know.
+TEST(SmallFigures, OneThatIsLitInPartCountsAsLit) {
+    const PlanDrawing drawing = drawing_of(plate(2.4));
+    RigCalibration rig = test::rig_before_ball();
+    const int whole = rig.projector.width;
+    const double middle = project(rig.projector, hole(0, 7, 1).position_in_ct)->x();
+    int in_part = 0;
+    for (int cut = -6; cut <= 6; ++cut) {
+        rig.projector.width = std::min(whole, static_cast<int>(middle) + cut);
+        RgbImage picture;
+        const RenderCounts counts =
+            DrawingRenderer(test::ball(), rig.projector).render_into(picture, drawing, RigidTransform::Identity());
+        LightCheck check =
+            check_light(drawing, test::ball(), rig, RigidTransform::Identity(), test::pictures_of(drawing, rig, {}));
+        note_lit_items(counts, check);
+        for (std::size_t i = 0; i < check.items.size(); ++i) {
+            in_part += counts.items[i].lit_share() > 0.2 && counts.items[i].lit_share() < 0.8;
+            if (counts.items[i].lit_share() > 0.2) {
+                EXPECT_TRUE(check.items[i].lit) << i << " cut at " << cut;
+            }
+        }
+    }
+    EXPECT_GT(in_part, 3);
 }
 
 TEST(SmallFigures, OneThatIsCoveredIsNotSeenThoughItsNeighboursAre) {

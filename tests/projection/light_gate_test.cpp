@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "tests/projection/light_gate_scenes.h"
@@ -264,6 +265,42 @@ TEST(LightGate, EveryItemThatIsLitMustBeMeasured) {
     EXPECT_EQ(after(gate, now, 10, check).trust, LightTrust::aligned) << "what is not lit need not be measured";
 }
 
+// A head that turns away and back: what was measured before was another moment's light.
+TEST(LightGate, AnItemThatComesBackIntoTheLightIsMeasuredAnew) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    LightCheck both = seen_at(0.1);
+    both.items = {item("Hole 1", 8, 8, 0.1), item("Hole 2", 6, 6, 0.1)};
+    EXPECT_EQ(after(gate, now, 10, both).trust, LightTrust::aligned);
+    LightCheck one = both;
+    one.items[1] = item("Hole 2", 0, 0, 0, false);
+    EXPECT_EQ(after(gate, now, 50, one).trust, LightTrust::aligned);
+    EXPECT_EQ(after(gate, now, 2, both).trust, LightTrust::look);
+    EXPECT_EQ(after(gate, now, 1, both).trust, LightTrust::aligned);
+}
+
+// Dim light need not be seen; where it is, and lies aside, that is no green.
+TEST(LightGate, ADimItemIsHeldAgainstTheLightOnlyWhereItIsSeenAside) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    LightCheck check = seen_at(0.1);
+    check.items = {item("Hole 1", 8, 8, 0.1), item("Hole 2", 0, 6, 0)};
+    check.items[1].dim = true;
+    check.items[1].lit_segments = 12;
+    EXPECT_EQ(after(gate, now, 10, check).trust, LightTrust::aligned);
+    for (const int seen : {2, 5}) {
+        check.items[1].seen = seen;
+        check.items[1].off_mm = 1.6;
+        const auto ruling = after(gate, now, 10, check);
+        EXPECT_EQ(ruling.trust == LightTrust::aligned, seen == 2) << "a third of it may be other light";
+        if (seen == 5) {
+            EXPECT_EQ(ruling.headline, "LOOK: \"Hole 2\" lies 1.6 mm beside its place.");
+        }
+    }
+}
+
 /// A verified gate with one good item and another, whose looks, 100 ms apart, come round; how many of 100 are green.
 int green_of(const std::vector<ItemLight>& looks) {
     LightGate gate;
@@ -390,6 +427,8 @@ TEST(LightGate, SkinThatLiesElsewhereStopsTheLightUntilTheNextMatch) {
     EXPECT_TRUE(after(gate, now, 1, seen_at(0.1)).stop) << "Track does not mend it";
     gate.new_match();
     EXPECT_FALSE(after(gate, now, 1, seen_at(0.1)).stop);
+    gate.skin_checked(std::nan(""));
+    EXPECT_TRUE(gate.forbids()) << "what cannot be told is no agreement";
 }
 
 }  // namespace

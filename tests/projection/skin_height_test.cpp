@@ -171,6 +171,56 @@ TEST(SkinHeight, AnItemThatIsLitButTooSteepToBeMeasuredIsNoGreen) {
     EXPECT_NE(ruling.headline.find("Steep"), std::string::npos) << ruling.headline;
 }
 
+/// One item alone is bright, at the operator's press: what the others' dim light shows is not lost in its green.
+TEST(SkinHeight, ADimItemOnRisenSkinIsNoGreenOfTheBrightOne) {
+    const RigCalibration rig = test::rig_before_ball();
+    Plan plan;
+    plan.boreholes = {hole("Hole 1", 0.1, 0.35), hole("Hole 2", 0.5, 0.3), hole("Swollen", 0.3, -0.35)};
+    const PlanDrawing drawing = drawing_of(plan);
+    for (const double risen_mm : {0.0, 2.5}) {
+        test::LitBall lit;
+        lit.swollen = plan.boreholes.back().position_in_ct;
+        lit.swollen_mm = risen_mm;
+        const StereoFrame pictures = test::pictures_of(drawing, rig, lit);
+        const LightCheck check =
+            LightChecker(drawing, test::ball(), rig, {}, 0).look(RigidTransform::Identity(), pictures);
+        EXPECT_FALSE(check.items[0].dim);
+        EXPECT_TRUE(check.items[2].dim);
+        EXPECT_LT(check.off_mm, 0.3) << "of the bright one";
+        for (const SeenSegment& s : check.segments) EXPECT_EQ(s.item, 0);
+        const LightGate::Ruling ruling = ruling_of(check);
+        EXPECT_EQ(ruling.trust == LightTrust::aligned, risen_mm == 0) << ruling.headline;
+        if (risen_mm > 0) {
+            EXPECT_NE(ruling.headline.find("Swollen"), std::string::npos) << ruling.headline;
+        }
+    }
+}
+
+/// Where two items lie side by side neither's light can be told from the other's: such a line is measured in part.
+TEST(SkinHeight, ALineBesideAnotherForMostOfItsWayIsMeasuredInPartOnly) {
+    const RigCalibration rig = test::rig_before_ball();
+    for (const double together : {0.0, 0.7}) {
+        Plan plan;
+        plan.boreholes = {hole("Hole 1", 0.25, 0.75), hole("Hole 2", 0.25, 0.0)};
+        OsteotomyLine line, other;
+        line.name = "Line", other.name = "Other";
+        for (double share = 0; share < 1.01; share += 0.1) {
+            const double longitude = -0.2 + share, apart_mm = share <= together ? 1.8 : 1.8 + 25 * (share - together);
+            line.points_in_ct.push_back(test::on_ball(longitude, 0.35));
+            other.points_in_ct.push_back(
+                test::on_ball(longitude, 0.35 + (together > 0 ? apart_mm : 12) / test::kBallRadius_mm));
+        }
+        plan.osteotomy_lines = {line, other};
+        const PlanDrawing drawing = drawing_of(plan);
+        const LightCheck check =
+            check_light(drawing, test::ball(), rig, RigidTransform::Identity(), test::pictures_of(drawing, rig, {}));
+        const LightGate::Ruling ruling = ruling_of(check);
+        EXPECT_EQ(ruling.headline,
+                  together > 0 ? "LOOK: \"Line\" is measured in part only." : "The plan is on the skin.")
+            << together;
+    }
+}
+
 /// The cameras see a third of the line; on the rest there is no light at all.
 TEST(SkinHeight, ALineOfWhichTheCamerasSeeAThirdIsMeasuredInPartOnly) {
     RigCalibration rig = test::rig_before_ball();

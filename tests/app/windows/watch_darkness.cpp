@@ -4,7 +4,8 @@
 // executable, as `watch_darkness hold MONITOR`, is the program that is stopped, killed, or made to hang while its light
 // is on. Exit code 0 when every light was dark in 300 ms. With HANG_IN_SWAP, the library of that name, also a graphics
 // driver that hangs before a picture expires, while nothing else is ordered: dark in 900 ms, or in 400 ms from the end
-// of the program.
+// of the program; and one that hangs while pictures come thirty times a second: dark in 650 ms, also where the program
+// is stopped.
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -34,7 +35,7 @@ constexpr Instant kLongest = 300ms;
 volatile std::sig_atomic_t deadlock = 0, endless_loop = 0;
 
 /// Holds a white light as a session does: checks, renews, sleeps. SIGUSR1 makes it a deadlock, SIGUSR2 a loop without
-/// end. The picture expires after EXPIRES_MS, if that is set.
+/// end. The picture expires after EXPIRES_MS, if that is set; with PICTURES_EVERY_MS new ones follow it.
 int hold(const std::string& monitor) {
     const char* const expires_ms = std::getenv("EXPIRES_MS");
     std::signal(SIGUSR1, [](int) { deadlock = 1; });
@@ -48,6 +49,12 @@ int hold(const std::string& monitor) {
                        (expires_ms == nullptr ? Instant(600s) : std::chrono::milliseconds(std::atoi(expires_ms))));
     fmt::print("{}\n", projector.process());
     std::fflush(stdout);
+    const char* const every_ms = std::getenv("PICTURES_EVERY_MS");
+    while (every_ms != nullptr) {
+        projector.renew();
+        projector.show(RgbImage(projector.width(), projector.height(), {255, 255, 255}), SteadyClock().now() + 75ms);
+        std::this_thread::sleep_for(std::chrono::milliseconds(std::atoi(every_ms)));
+    }
     for (;;) {
         while (deadlock) std::this_thread::sleep_for(1h);
         while (endless_loop) {
@@ -176,6 +183,40 @@ void watch_hanging_driver(const char* self, const Monitor& monitor, int rounds, 
     for (const char* name : {"LD_PRELOAD", "HANG_WHEN", "EXPIRES_MS"}) unsetenv(name);
 }
 
+/// The same while pictures come thirty times a second: the one that hangs, and the one before it, can be taken down by
+/// the end of the process alone.
+void watch_driver_that_hangs_in_a_picture(const char* self, const Monitor& monitor, int rounds,
+                                          const std::string& folder) {
+    const std::string file = folder + "/hang_now";
+    setenv("LD_PRELOAD", std::getenv("HANG_IN_SWAP"), 1);
+    setenv("HANG_WHEN", file.c_str(), 1);
+    setenv("PICTURES_EVERY_MS", "33", 1);
+    const test::ScreenPixel eye(monitor);
+    for (const bool stopped : {false, true}) {
+        Instant worst{};
+        int never = 0;
+        for (int round = 0; round < rounds; ++round) {
+            unlink(file.c_str());
+            const Holder holder = start_holder(self, monitor.name);
+            std::this_thread::sleep_for(200ms);
+            if (holder.projector <= 0 || !eye.lit()) expect(false, "there was light before");
+            std::fclose(std::fopen(file.c_str(), "w"));
+            if (stopped) kill(holder.program, SIGSTOP);
+            if (const auto dark = eye.until_dark(5s))
+                worst = std::max(worst, *dark);
+            else
+                ++never;
+            holder.end();
+        }
+        expect(
+            never == 0 && worst <= 650ms,
+            fmt::format("the graphics driver hangs in a picture{}: dark after {:.0f} ms (worst of {}), never {} times",
+                        stopped ? ", and the program is stopped" : "", 1000 * seconds(worst), rounds, never));
+    }
+    unlink(file.c_str());
+    for (const char* name : {"LD_PRELOAD", "HANG_WHEN", "PICTURES_EVERY_MS"}) unsetenv(name);
+}
+
 void second_master(const Monitor& monitor) {
     ProjectorProcessSettings settings;
     settings.program = std::getenv("PLANLIGHT");
@@ -204,8 +245,10 @@ int main(int argc, char** argv) {
     if (std::getenv("PLANLIGHT") == nullptr || monitors.size() != 2) return 2;
     const int rounds = std::getenv("ROUNDS") == nullptr ? 3 : std::atoi(std::getenv("ROUNDS"));
     second_master(monitors[1]);
-    if (std::getenv("HANG_IN_SWAP") != nullptr)
+    if (std::getenv("HANG_IN_SWAP") != nullptr) {
         watch_hanging_driver(argv[0], monitors[1], rounds, argc > 1 ? argv[1] : "/tmp");
+        watch_driver_that_hangs_in_a_picture(argv[0], monitors[1], rounds, argc > 1 ? argv[1] : "/tmp");
+    }
     watch(argv[0], monitors[1], rounds);
     return test::failures() == 0 ? 0 : 1;
 }
