@@ -110,6 +110,26 @@ void tell_of_recording(PatientRecorded recorded, bool begun, OperatorModel& mode
     if (!begun && model.status.kind == StatusKind::ready) model.status.details.emplace_back(words);
 }
 
+/// Light that nobody watches over goes out: a minimised window shows no banner and hears no key. That it did so is said
+/// until the next press.
+class MinimisedWindow {
+public:
+    /// True where there must be no light now.
+    bool look(const OperatorWindow& window, bool light_on) {
+        if (!window.minimised()) return false;
+        went_dark_ = went_dark_ || light_on;
+        return true;
+    }
+    void pressed() { went_dark_ = false; }
+    void put_into(OperatorModel& model) const {
+        if (went_dark_)
+            model.status.details.insert(model.status.details.begin(), "It went dark as this window was minimised.");
+    }
+
+private:
+    bool went_dark_ = false;
+};
+
 /// What a look at the session counts as.
 WindowMeter::Phase phase_of(const OperatorModel& model) {
     if (follows(model)) return WindowMeter::Phase::following;
@@ -163,12 +183,14 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
     StepPictures pictures(options.screenshots, "operator");
     std::optional<std::chrono::steady_clock::time_point> projecting_since;
     note_end_signals();
+    MinimisedWindow minimised;
     bool begun = false;  // by a press
     while (!asked_to_end()) {
         OperatorModel model = session.model();
         say_silence(model, session.projecting(), SteadyClock().now() - session.alive_at(),
                     model.room_kind == RoomKind::real ? kSessionPatience : kSimulatedPatience);
         if (projector) tell_of_projector(*projector, session, watch, autoplay, model);
+        minimised.put_into(model);
         tell_of_recording(options.recorded, begun, model);
         if (const std::string trouble = options.trouble ? options.trouble() : ""; !trouble.empty())
             model.status.details.push_back(trouble);
@@ -177,13 +199,18 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         const auto frame_began = std::chrono::steady_clock::now();
         const OperatorAction action = window.frame(model);
         const double rest_s = rest_after(std::chrono::steady_clock::now() - frame_began);
+        const bool unseen = minimised.look(window, model.light_on);
+        if (unseen && model.light_on) {
+            session.post(OperatorAction::dark, AskedBy::program);
+            if (projector) projector->go_dark();
+        }
         if (projector) {
             projector->window_lives();
             projector->session_lives(session.alive_at());
         }
         if (action == OperatorAction::quit) return 0;
         autoplay.pressed(action);
-        if (action != OperatorAction::none) watch.pressed(), begun = true;
+        if (action != OperatorAction::none) watch.pressed(), minimised.pressed(), begun = true;
         // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays
         // refused.
         if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)
@@ -195,7 +222,7 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
             window.say(session.post(action));
         // After the post: what the session hands over from now on is no light any more.
         if (projector && (action == OperatorAction::dark || action == OperatorAction::stop)) projector->go_dark();
-        if (options.autoplay && meter.idle_s() >= options.idle_first_s) {
+        if (options.autoplay && !unseen && meter.idle_s() >= options.idle_first_s) {
             const OperatorAction by_itself = autoplay.next(model);
             session.post(by_itself, AskedBy::program);
             begun = begun || by_itself != OperatorAction::none;

@@ -262,6 +262,10 @@ bool GuiWindow::asked_to_close() const {
     return glfwWindowShouldClose(parts_->window) == GLFW_TRUE;
 }
 
+bool GuiWindow::minimised() const {
+    return glfwGetWindowAttrib(parts_->window, GLFW_ICONIFIED) == GLFW_TRUE;
+}
+
 void GuiWindow::keep_open() {
     glfwSetWindowShouldClose(parts_->window, GLFW_FALSE);
 }

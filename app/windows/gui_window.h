@@ -45,7 +45,8 @@ public:
 
     void make_current();
     bool asked_to_close() const;
-    void keep_open();  ///< forgets that it was asked to close
+    bool minimised() const;  ///< as the window system tells it: nobody sees the window
+    void keep_open();        ///< forgets that it was asked to close
     const FontFiles& font_files() const;
 
 private:

@@ -289,6 +289,10 @@ void OperatorWindow::rest(double longest_s) {
         parts_->gui.take_input(longest_s);
 }
 
+bool OperatorWindow::minimised() const {
+    return parts_->gui.minimised();
+}
+
 std::size_t OperatorWindow::frames_drawn() const {
     return parts_->frames;
 }

@@ -35,6 +35,8 @@ public:
     /// Waits until the person does something, `longest_s` at most. A loop that draws no more than it must calls this
     /// after every frame.
     void rest(double longest_s);
+    /// Nobody sees it, and none of its keys is heard.
+    bool minimised() const;
     /// How often the window was drawn so far.
     std::size_t frames_drawn() const;
 
