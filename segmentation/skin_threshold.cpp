@@ -87,6 +87,23 @@ std::size_t otsu(const Histogram& h) {
                      "Check that the series shows the head with air round it, or give the threshold yourself.");
 }
 
+/// Where much of a CT has the lowest value that there is, above that of air, it was cut off there on the way here.
+void check_not_cut_off(const Volume& volume) {
+    constexpr double kMuch = 0.1;
+    const auto [lowest, highest] = std::minmax_element(volume.values.begin(), volume.values.end());
+    if (lowest == volume.values.end() || !(*highest > *lowest)) return;
+    const double share = static_cast<double>(std::count(volume.values.begin(), volume.values.end(), *lowest)) /
+                         static_cast<double>(volume.values.size());
+    if (share < kMuch) return;
+    throw InputError(
+        {},
+        fmt::format(
+            "There is no air in the volume: {:.0f} % of its voxels have its lowest value, {:.0f} HU (the highest "
+            "is {:.0f}), so that it was cut off there{}",
+            100 * share, *lowest, *highest, *highest - *lowest <= 255 ? ", or put into 256 greys" : ""),
+        "Export the series with all its values: without a window, 8 bits or a lower limit.");
+}
+
 }  // namespace
 
 double skin_threshold(const Volume& volume, bool phantom) {
@@ -97,7 +114,10 @@ double skin_threshold(const Volume& volume, bool phantom) {
             phantom ? histogram_of(volume.values, -1100, 3100, 420) : histogram_of(volume.values, -1100, 400, 150);
         const std::size_t air_end = h.bin(-705), soft_start = h.bin(phantom ? -395 : -95),
                           soft_end = h.bin(phantom ? 3095 : 145);
-        if (sum_of(h, 0, air_end) < 0.005 * count) refuse("no air");
+        if (sum_of(h, 0, air_end) < 0.005 * count) {
+            check_not_cut_off(volume);
+            refuse("no air");
+        }
         double soft = peak(h, soft_start, soft_end), found = sum_of(h, soft_start, soft_end), least = -500;
         if (!phantom) {
             // A cone-beam CT's greys are HU only roughly: where soft tissue lies elsewhere, by far most of the body

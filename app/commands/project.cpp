@@ -57,10 +57,12 @@ void check_verdict(const RegistrationResult& registration, const ProjectOptions&
     const bool usable =
         registration.verdict == Verdict::yes || (registration.verdict == Verdict::ask && options.confirmed);
     if (usable) return;
+    const bool bad_rig = registration.rig && registration.rig->verdict == RigState::Verdict::not_trusted;
+    const bool advised = bad_rig && !registration.rig->remedy.empty();  // and it is among the reasons
     throw CheckFailedError(fmt::format("the registration may not be used: {}", fmt::join(registration.reasons, "; ")),
                            registration.verdict == Verdict::ask
                                ? "Look at the overlay on landmarks and give --confirmed, or scan again."
-                               : "Scan again.");
+                               : (advised ? registration.rig->remedy : "Scan again."));
 }
 
 /// Files of other cases, rigs and scans are refused; what they do not say is said.

@@ -216,6 +216,25 @@ TEST(SegmentSkin, RefusesVolumesWithoutSkin) {
     EXPECT_THROW(segment_skin(pea), InputError);
 }
 
+// As a viewer saves it: all that is darker than the window's lower end has its value.
+TEST(SegmentSkin, SaysThatTheValuesWereCutOff) {
+    const auto said = [](double low, double high, double slope) {
+        Volume scan = bare().scan;
+        for (auto& v : scan.values) v = static_cast<float>(slope * (std::clamp<double>(v, low, high) - low));
+        try {
+            segment_skin(scan);
+        } catch (const InputError& e) {
+            return std::string(e.what()) + ". " + e.remedy;
+        }
+        return std::string("taken");
+    };
+    const std::string cut = said(0, 3000, 1), windowed = said(-160, 240, 255.0 / 400);
+    EXPECT_NE(cut.find("its lowest value, 0 HU"), std::string::npos) << cut;
+    EXPECT_EQ(cut.find("256 greys"), std::string::npos) << cut;
+    EXPECT_NE(windowed.find("put into 256 greys"), std::string::npos) << windowed;
+    EXPECT_NE(windowed.find("without a window"), std::string::npos) << windowed;
+}
+
 TEST(SegmentSkin, APhantomOfBoneAloneIsFoundWithItsThinSkull) {
     // A shell of 4 mm round a ball of 25 mm, that a rod of 3 mm holds.
     Volume volume;
