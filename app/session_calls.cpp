@@ -6,8 +6,7 @@ namespace planlight {
 
 SessionSettings settings_for(const MarkerDesign& markers) {
     SessionSettings settings;
-    settings.tracking.design = markers;
-    settings.tracking.markers.sticker_ratio = markers.sticker_diameter_mm / markers.disc_diameter_mm;
+    settings.tracking = tracking_settings_for(markers);
     return settings;
 }
 

@@ -16,6 +16,7 @@
 #include "app/windows/camera_page.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/types/error.h"
+#include "registration/tracking/track_patient.h"
 
 namespace planlight {
 namespace {
@@ -160,7 +161,8 @@ int run_cameras(const CamerasOptions& options) {
     const RoomFile room = read_room(options.room);
     const SteadyClock clock;
     RoomCameras cameras(room, clock);
-    CameraWatch watch(cameras.pair().left(), cameras.pair().right(), clock, pair_settings(room));
+    CameraWatch watch(cameras.pair().left(), cameras.pair().right(), clock, pair_settings(room),
+                      tracking_settings_for({room.disc_mm, room.sticker_mm}).markers);
     print_to_user("Nobody may lie under the projector.\n");
     if (!options.headless && !options.json) return show_page(options, room, cameras, watch, clock);
     std::unique_ptr<TestLight> light;

@@ -9,6 +9,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/device_check.h"
+#include "app/commands/marker_option.h"
 #include "app/commands/rig_words.h"
 #include "app/console.h"
 #include "app/json_text.h"
@@ -28,8 +29,9 @@ namespace {
 
 struct ScanOptions {
     Path capture, rig, out, raw_out;
-    Path surface_out;               ///< the same points with triangles; empty: not wanted
-    std::vector<Path> exposures;    ///< further captures of the same pose
+    Path surface_out;             ///< the same points with triangles; empty: not wanted
+    std::vector<Path> exposures;  ///< further captures of the same pose
+    std::string markers = "8/16";
     double max_movement_mm = 0.15;  ///< of the patient during the scan
     bool accept_movement = false, allow_missing = false, json = false;
 };
@@ -210,7 +212,8 @@ ScanMovement judged_movement(const std::vector<ScanCapture>& captures, const Sca
     ScanMovement most;
     for (const ScanCapture& capture : captures) {
         const bool first = &capture == &captures.front();
-        const ScanMovement movement = movement_in_scan(capture, rig, scan.clean.kept);
+        const ScanMovement movement = movement_in_scan(capture, rig, scan.clean.kept,
+                                                       tracking_settings_for(marker_design_named(options.markers)));
         if (first || movement.way_mm() > options.max_movement_mm) judge_movement(movement, options);
         if (first || movement.way_mm() > most.way_mm()) most = movement;
     }
@@ -243,6 +246,7 @@ void judge_fit(const ScanResult& scan, const RigCalibration& rig) {
 }
 
 int run_scan(const ScanOptions& options) {
+    marker_design_named(options.markers);  // before long work
     const RigCalibration rig = read_partial_rig(options.rig);
     std::vector<ScanCapture> captures;
     std::vector<Path> folders{options.capture};
@@ -337,6 +341,7 @@ Run add_scan(CLI::App& app) {
     sub->add_option("--raw", o.raw_out, "Also the cloud before the outliers were removed (.ply)");
     sub->add_option("--surface", o.surface_out,
                     "Also the scan as a triangulated surface (.ply: the same points, with faces)");
+    markers_option(sub, o.markers);
     sub->add_option("--max-movement-mm", o.max_movement_mm, "Of the patient during the scan; more is refused (exit 6)")
         ->capture_default_str()
         ->check(CLI::Range(0.01, 100.0));

@@ -10,6 +10,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/device_check.h"
+#include "app/commands/marker_option.h"
 #include "app/console.h"
 #include "app/json_text.h"
 #include "app/without_numbers.h"
@@ -29,6 +30,7 @@ namespace {
 
 struct TrackOptions {
     Path frames, rig, capture, registration, out;
+    std::string markers = "8/16";
     bool json = false;
 };
 
@@ -80,14 +82,30 @@ StereoFrame with_exchanged_pictures(StereoFrame frame) {
     return frame;
 }
 
+/// The disc's diameter with which most of the markers meet in space, though not with the one that was said, mm.
+std::optional<double> other_size_mm(const StereoFrame& frame, const RigCalibration& rig, MarkerDesign design,
+                                    std::size_t more_than) {
+    const double ratio = design.sticker_diameter_mm / design.disc_diameter_mm;
+    std::optional<double> best_mm;
+    for (const double mm : {4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 18.0, 22.0}) {
+        PatientTracker other(rig, tracking_settings_for({mm, ratio * mm}));
+        const std::size_t met = other.set_reference(frame).size();
+        if (met <= more_than) continue;
+        more_than = met;
+        best_mm = mm;
+    }
+    return best_mm;
+}
+
 /// Throws CheckFailedError with what can be told of the cause.
-void judge_reference(const PatientTracker& tracker, const StereoFrame& frame, const RigCalibration& rig) {
+void judge_reference(const PatientTracker& tracker, const StereoFrame& frame, const RigCalibration& rig,
+                     const MarkerDesign& design) {
     constexpr std::size_t kFew = 3, kSurelyPasted = 4;
     const std::size_t markers = tracker.markers().size(), left = tracker.seen_left().size(),
                       right = tracker.seen_right().size();
     if (markers >= kFew && 2 * markers >= std::min(left, right)) return;
     if (frame.left.width == frame.right.width && frame.left.height == frame.right.height) {
-        PatientTracker other(rig);
+        PatientTracker other(rig, tracking_settings_for(design));
         if (const std::size_t exchanged = other.set_reference(with_exchanged_pictures(frame)).size();
             exchanged > std::max(markers, kFew))
             throw CheckFailedError(
@@ -98,6 +116,10 @@ void judge_reference(const PatientTracker& tracker, const StereoFrame& frame, co
     }
     const std::string met = fmt::format(
         "{} of {} discs in the left and {} in the right reference picture meet in space", markers, left, right);
+    if (const auto mm = other_size_mm(frame, rig, design, std::max(markers, kFew)))
+        throw CheckFailedError(fmt::format("only {}, as discs of {:g} mm; as discs of some {:g} mm more of them do",
+                                           met, design.disc_diameter_mm, *mm),
+                               "Say how large the markers are: --markers DISC/STICKER, mm, as 12/24.");
     if (std::min(left, right) >= kSurelyPasted) {
         constexpr const char* kRemedy =
             "See that at least five of the markers are seen by both cameras, and give the rig.json that these cameras "
@@ -190,10 +212,11 @@ int run_track(const TrackOptions& options) {
     const auto frames = read_frames(options.frames);
     if (frames.empty())
         throw InputError(options.frames, "there is no frame in the folder", "Record at least one frame.");
+    const MarkerDesign design = marker_design_named(options.markers);
     const Reference reference = reference_of(options, rig, frames);
-    PatientTracker tracker(reference.origin.rig);
+    PatientTracker tracker(reference.origin.rig, tracking_settings_for(design));
     const auto markers = tracker.set_reference(reference.frame).size();
-    judge_reference(tracker, reference.frame, reference.origin.rig);
+    judge_reference(tracker, reference.frame, reference.origin.rig, design);
     std::vector<TrackedPose> poses;
     CameraLag cameras(reference.origin.rig);
     ProgressBar bar;
@@ -245,6 +268,7 @@ Run add_track(CLI::App& app) {
         "Capture folder of the scan: its white picture holds the reference markers (default: the first frame)");
     sub->add_option("--registration", o.registration,
                     "The match to follow: its rig, as the scan found it, is used (default: found again in --capture)");
+    markers_option(sub, o.markers);
     sub->add_option("--out", o.out, "poses.json to write")->required();
     json_flag(sub, o.json);
     return [options] { return run_track(*options); };

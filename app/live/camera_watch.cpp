@@ -22,8 +22,9 @@ double rate_of(const std::deque<std::pair<Instant, std::size_t>>& counts) {
 
 }  // namespace
 
-CameraWatch::CameraWatch(Camera& left, Camera& right, const Clock& clock, const PairSettings& pairs)
-    : clock_(clock), pairs_(pairs), left_{&left, {}, {}}, right_{&right, {}, {}} {
+CameraWatch::CameraWatch(Camera& left, Camera& right, const Clock& clock, const PairSettings& pairs,
+                         const MarkerSettings& markers)
+    : clock_(clock), pairs_(pairs), markers_(markers), left_{&left, {}, {}}, right_{&right, {}, {}} {
     for (auto [side, watched] : {std::pair{&left_, &now_.left}, std::pair{&right_, &now_.right}}) {
         watched->name = side->camera->name();
         watched->width = side->camera->width();
@@ -55,7 +56,7 @@ std::vector<CameraFrame> CameraWatch::take(Side& side, WatchedCamera& watched) {
 void CameraWatch::measure(const CameraFrame& newest, WatchedCamera& watched) const {
     watched.picture = std::make_shared<const GrayImage>(newest.picture);
     watched.exposure_ms = 1e3 * seconds(newest.exposure);
-    watched.markers = find_markers(newest.picture);
+    watched.markers = find_markers(newest.picture, markers_);
     watched.clipped = clipped_shares(newest.picture);
     watched.sharpness = focus_measure(newest.picture);
     watched.best_sharpness = std::max(watched.best_sharpness, watched.sharpness);

@@ -43,7 +43,8 @@ struct WatchedRoom {
 /// from any thread, the rest from one.
 class CameraWatch {
 public:
-    CameraWatch(Camera& left, Camera& right, const Clock& clock, const PairSettings& pairs);
+    CameraWatch(Camera& left, Camera& right, const Clock& clock, const PairSettings& pairs,
+                const MarkerSettings& markers = {});
 
     /// Takes what has come, and measures the newest picture of each.
     void look();
@@ -66,6 +67,7 @@ private:
 
     const Clock& clock_;
     PairSettings pairs_;
+    MarkerSettings markers_;
     Side left_, right_;
     std::deque<double> apart_ms_;
     WatchedRoom now_;  ///< of the thread that looks

@@ -26,8 +26,9 @@ struct CalibrationSettings {
     /// that of a pose whose projector may stand anywhere. More is a device that was moved between poses, by however
     /// little.
     double max_worse_together = 1.6;
-    double max_left_out = 0.2;      ///< share of corners or lit pixels that may disagree with the rest
-    double max_predicted_mm = 1.0;  ///< 95 % of the working volume, of scanned points and of light sent to them
+    double max_board_stretch = 0.005;  ///< of its height against its width, as both cameras see it alike
+    double max_left_out = 0.2;         ///< share of corners or lit pixels that may disagree with the rest
+    double max_predicted_mm = 1.0;     ///< 95 % of the working volume, of scanned points and of light sent to them
 };
 
 /// Why a calibration is refused, and what to do.

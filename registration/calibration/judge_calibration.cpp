@@ -194,18 +194,42 @@ std::optional<Refusal> judge_lens(const CameraModel& d, DeviceName name) {
     if (!(by_width > 0.3 && by_width < 12))
         return Refusal{fmt::format("the {}'s focal length comes out as {:.2f} picture widths", what, by_width), remedy};
     if (!(std::abs(aspect - 1) < 0.03))
-        return Refusal{fmt::format("the {}'s pixels come out {:.1f} % wider than high", what, 100 * (1 / aspect - 1)),
-                       remedy};
+        return Refusal{
+            fmt::format("the {}'s pixels come out {:.1f} % {} than high", what, 100 * std::abs(1 / aspect - 1),
+                        aspect < 1 ? "wider" : "narrower"),
+            name == DeviceName::projector
+                ? "Give the projector pictures of its own resolution, with scaling, zoom and keystone correction off "
+                  "(\"1:1\", \"native\"), and capture again."
+                : "Switch binning and decimation off, or alike in both directions, see that the board's squares are as "
+                  "high as wide, and capture again."};
     const double off_x = std::abs(d.centre_x / d.width - 0.5), off_y = std::abs(d.centre_y / d.height - 0.5);
     if (name != DeviceName::projector && (off_x > 0.3 || off_y > 0.3))
         return Refusal{
-            fmt::format("the {}'s optical axis comes out at pixel {:.0f}, {:.0f}", what, d.centre_x, d.centre_y),
-            remedy};
+            fmt::format("the {}'s optical axis comes out at pixel {:.0f}, {:.0f} of {} x {}", what, d.centre_x,
+                        d.centre_y, d.width, d.height),
+            "If the camera sends a part of its sensor, cut it round the middle; else capture more poses, tilted 15 to "
+            "40 degrees every way and at two distances, with zoom and focus fixed."};
     if (off_x > 3 || off_y > 3)
         return Refusal{
             fmt::format("the {}'s optical axis comes out at pixel {:.0f}, {:.0f}", what, d.centre_x, d.centre_y),
             remedy};
     return std::nullopt;
+}
+
+/// How much longer than wide the board's squares seem to be, as a share; 0 unless both cameras say so alike. Cameras
+/// have square pixels: what both see stretched is the board, as a printer's feed does it, and so would be every length
+/// of the patient in one direction.
+double board_stretch(const RigEstimate& rig) {
+    constexpr double kAlike = 2;
+    const auto &left = rig.device(DeviceName::left_camera), &right = rig.device(DeviceName::right_camera);
+    if (!left || !right) return 0;
+    const double a = 1 - left->focal_x / left->focal_y, b = 1 - right->focal_x / right->focal_y;
+    return a * b > 0 && std::abs(a) < kAlike * std::abs(b) && std::abs(b) < kAlike * std::abs(a) ? (a + b) / 2 : 0;
+}
+
+std::string said_of_stretch(double stretch) {
+    return fmt::format("both cameras see the board {:.1f} % {} than it should be", 100 * std::abs(stretch),
+                       stretch > 0 ? "longer in its height" : "shorter in its height");
 }
 
 /// Of a camera that is upright to the left one and beside it. Of cameras that are rolled against each other or stand
@@ -251,7 +275,8 @@ std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, 
         return Refusal{
             fmt::format("the right camera stands {:.0f} mm to the left of the left one: left and right are swapped",
                         -right->centre_in_rig().x()),
-            "Exchange the left and right pictures (or the cameras' cables)."};
+            "Exchange the left and right pictures (or the cameras' cables); if they are right, the pictures of both "
+            "are mirrored: switch that off (writing held before a camera must be readable)."};
     for (const DeviceName camera : kCameras)
         if (const auto& d = cameras.rig.device(camera))
             if (auto refusal = judge_lens(*d, camera)) return refusal;
@@ -289,6 +314,10 @@ std::optional<Refusal> judge_rig(const std::vector<PoseObservation>& poses, cons
     for (const DeviceName name : kDevices)
         if (const auto& d = bundle.rig.device(name))
             if (auto refusal = judge_lens(*d, name)) return refusal;
+    if (const double stretch = board_stretch(bundle.rig); std::abs(stretch) > s.max_board_stretch)
+        return Refusal{said_of_stretch(stretch),
+                       "Measure the board's width and its height over many squares; print it without scaling to the "
+                       "page, on another printer if need be, and capture again."};
     if (!calibration.volume) return std::nullopt;
     const VolumeError& volume = *calibration.volume;
     for (const auto& [what, p95_mm] : {std::pair("points", volume.p95_mm), {"the light", volume.light_p95_mm}})
@@ -334,6 +363,9 @@ std::vector<std::string> warnings_about(const std::vector<PoseObservation>& pose
         warnings.push_back(
             fmt::format("the projector's pixels are {:.1f} % off square: is keystone correction or digital zoom on?",
                         100 * (p->focal_x / p->focal_y - 1)));
+    constexpr double kSquare = 0.002;  // of good boards a ten-thousandth
+    if (const double stretch = board_stretch(bundle.rig); std::abs(stretch) > kSquare)
+        warnings.push_back(said_of_stretch(stretch) + "; measure its width and its height");
     if (const double bend = bundle.rig.bend_mm.cwiseAbs().maxCoeff(); bend > 0.5)
         warnings.push_back(fmt::format("the board is bent by {:.1f} mm; glue it on a flat plate", bend));
     constexpr double kNearest_mm = 250, kFarthest_mm = 3500;

@@ -2,6 +2,7 @@
 
 #include <arv.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -97,24 +98,85 @@ std::string GenicamCamera::serial_of_device() const {
     return text_or_empty(arv_camera_get_device_serial_number(device_->camera.get(), GenicamFailure().slot()));
 }
 
-void GenicamCamera::refuse(const std::string& what, const std::string& why) const {
-    throw DeviceError(name_, fmt::format("does not take {} ({})", what, why),
-                      "Give what `planlight devices` lists for it.");
+void GenicamCamera::refuse(const std::string& what, const std::string& why, const std::string& remedy) const {
+    throw DeviceError(name_, fmt::format("does not take {} ({})", what, why), remedy);
 }
+
+namespace {
+
+constexpr const char* kSwitchOffAndOn = "Switch it off and on again, and end other programs that use it.";
+
+using ListOf = const char** (*)(ArvCamera*, guint*, GError**);
+
+/// What a camera offers; empty where it does not say.
+std::vector<std::string> offered(ArvCamera* camera, ListOf list_of) {
+    guint count = 0;
+    const char** const words = list_of(camera, &count, GenicamFailure().slot());
+    std::vector<std::string> list;
+    for (guint i = 0; words != nullptr && i < count; ++i) list.emplace_back(words[i]);
+    g_free(words);
+    return list;
+}
+
+std::string remedy_of_format(ArvCamera* camera) {
+    const auto formats = offered(camera, arv_camera_dup_available_pixel_formats_as_strings);
+    if (formats.empty()) return "Give \"pixel_format\" as its manual has it.";
+    const bool grey = std::ranges::any_of(formats, [](const std::string& f) { return f.starts_with("Mono"); });
+    const std::string all = fmt::format("{}", fmt::join(formats, ", "));
+    return grey
+               ? fmt::format("Set \"pixel_format\" to a grey one of these: {}.", all)
+               : fmt::format(
+                     "It is a colour camera ({}): take a grey one, or let a \"pipeline\" turn its pictures grey.", all);
+}
+
+using BoundsOf = void (*)(ArvCamera*, double*, double*, GError**);
+
+/// `by`: of the file's unit in one of the camera's.
+std::string remedy_of_bounds(ArvCamera* camera, const char* key, BoundsOf bounds_of, double by) {
+    double least = 0, most = 0;
+    GenicamFailure failure;
+    bounds_of(camera, &least, &most, failure.slot());
+    if (failure.happened() || !(most > least)) return fmt::format("Give \"{}\" as its manual has it.", key);
+    return fmt::format(
+        "Set \"{}\" to {:.3g} to {:.3g}; where that is too little, see whether the frame rate and the "
+        "region leave room for it.",
+        key, by * least, by * most);
+}
+
+std::string remedy_of_line(ArvCamera* camera) {
+    const auto lines = offered(camera, arv_camera_dup_available_trigger_sources);
+    return lines.empty() ? std::string("Give \"line\" as its manual has it.")
+                         : fmt::format("Set \"line\" to one of these: {}.", fmt::join(lines, ", "));
+}
+
+/// Bytes a second that its pictures travel with at the most: as it says itself, else of a usual link of its kind.
+double link_speed(ArvCamera* camera) {
+    constexpr double kGigabit = 125e6, kUsb3 = 400e6;
+    GenicamFailure failure;
+    if (arv_camera_is_feature_available(camera, "DeviceLinkSpeed", failure.slot())) {
+        const double said = static_cast<double>(arv_camera_get_integer(camera, "DeviceLinkSpeed", failure.slot()));
+        if (!failure.happened() && said > 1e6) return said;
+    }
+    return arv_camera_is_uv_device(camera) ? kUsb3 : kGigabit;
+}
+
+}  // namespace
 
 void GenicamCamera::set_format_and_region() {
     ArvCamera* camera = device_->camera.get();
     GenicamFailure failure;
     arv_camera_stop_acquisition(camera, failure.slot());  // of a program that ended badly
     arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, failure.slot());
-    if (failure.happened()) refuse("continuous acquisition", failure.text());
+    if (failure.happened()) refuse("continuous acquisition", failure.text(), kSwitchOffAndOn);
     const std::string format = settings_.pixel_format.empty() ? "Mono8" : settings_.pixel_format;
     arv_camera_set_pixel_format_from_string(camera, format.c_str(), failure.slot());
-    if (failure.happened()) refuse("the pixel format " + format, failure.text());
+    if (failure.happened()) refuse("the pixel format " + format, failure.text(), remedy_of_format(camera));
     if (!settings_.region) return;
     const auto [x, y, width, height] = *settings_.region;
     arv_camera_set_region(camera, x, y, width, height, failure.slot());
-    if (failure.happened()) refuse(fmt::format("the region {} {} {} {}", x, y, width, height), failure.text());
+    if (failure.happened())
+        refuse(fmt::format("the region {} {} {} {}", x, y, width, height), failure.text(),
+               "Give x, y, width and height within its sensor, each in the steps that its manual has.");
 }
 
 /// As told; what was not told as at the first opening: what another program set meanwhile, or a camera forgot, is set
@@ -125,23 +187,28 @@ void GenicamCamera::set_exposure_and_gain() {
     const bool opened_before = exposure_ > Instant{};
     if (settings_.exposure_ms) {
         arv_camera_set_exposure_time(camera, 1e3 * *settings_.exposure_ms, failure.slot());
-        if (failure.happened()) refuse(fmt::format("an exposure of {} ms", *settings_.exposure_ms), failure.text());
+        if (failure.happened())
+            refuse(fmt::format("an exposure of {} ms", *settings_.exposure_ms), failure.text(),
+                   remedy_of_bounds(camera, "exposure_ms", arv_camera_get_exposure_time_bounds, 1e-3));
     } else if (opened_before) {
         const double was_us = 1e6 * seconds(exposure_);
         arv_camera_set_exposure_time(camera, was_us, failure.slot());
         const double now_us = arv_camera_get_exposure_time(camera, failure.slot());
         if (failure.happened() || another_exposure(now_us, was_us))
             refuse(fmt::format("the exposure that it had, {:.2f} ms", was_us / 1e3),
-                   fmt::format("it is {:.2f} ms", now_us / 1e3));
+                   fmt::format("it is {:.2f} ms", now_us / 1e3), kSwitchOffAndOn);
     }
     if (settings_.gain) {
         arv_camera_set_gain(camera, *settings_.gain, failure.slot());
-        if (failure.happened()) refuse(fmt::format("a gain of {}", *settings_.gain), failure.text());
+        if (failure.happened())
+            refuse(fmt::format("a gain of {}", *settings_.gain), failure.text(),
+                   remedy_of_bounds(camera, "gain", arv_camera_get_gain_bounds, 1));
     } else if (opened_before && arv_camera_is_gain_available(camera, failure.slot())) {
         arv_camera_set_gain(camera, gain_, failure.slot());
         const double gain = arv_camera_get_gain(camera, failure.slot());
         if (failure.happened() || another_gain(gain, gain_))
-            refuse(fmt::format("the gain that it had, {:.1f}", gain_), fmt::format("it is {:.1f}", gain));
+            refuse(fmt::format("the gain that it had, {:.1f}", gain_), fmt::format("it is {:.1f}", gain),
+                   kSwitchOffAndOn);
     }
 }
 
@@ -150,13 +217,15 @@ void GenicamCamera::set_trigger() {
     GenicamFailure failure;
     if (!settings_.line.empty()) {
         arv_camera_set_trigger(camera, settings_.line.c_str(), failure.slot());
-        if (failure.happened()) refuse("the trigger " + settings_.line, failure.text());
+        if (failure.happened()) refuse("the trigger " + settings_.line, failure.text(), remedy_of_line(camera));
         return;
     }
     arv_camera_clear_triggers(camera, failure.slot());
     if (!settings_.frames_hz) return;
     arv_camera_set_frame_rate(camera, *settings_.frames_hz, failure.slot());
-    if (failure.happened()) refuse(fmt::format("{} frames a second", *settings_.frames_hz), failure.text());
+    if (failure.happened())
+        refuse(fmt::format("{} frames a second", *settings_.frames_hz), failure.text(),
+               remedy_of_bounds(camera, "frames_hz", arv_camera_get_frame_rate_bounds, 1));
 }
 
 GenicamCamera::Setup GenicamCamera::configure() {
@@ -170,7 +239,8 @@ GenicamCamera::Setup GenicamCamera::configure() {
     set_exposure_and_gain();
     set_trigger();
     const double exposure_us = arv_camera_get_exposure_time(camera, failure.slot());
-    if (failure.happened() || !(exposure_us > 0)) refuse("a question for its exposure", failure.text());
+    if (failure.happened() || !(exposure_us > 0))
+        refuse("a question for its exposure", failure.text(), kSwitchOffAndOn);
     exposure_ = from_seconds(exposure_us / 1e6);
     if (settings_.exposure_ms && another_exposure(exposure_us, 1e3 * *settings_.exposure_ms))
         setup.notes.push_back(
@@ -178,7 +248,7 @@ GenicamCamera::Setup GenicamCamera::configure() {
     gain_ = arv_camera_is_gain_available(camera, failure.slot()) ? arv_camera_get_gain(camera, failure.slot()) : 0;
     int x = 0, y = 0;
     arv_camera_get_region(camera, &x, &y, &setup.width, &setup.height, failure.slot());
-    if (failure.happened()) refuse("a question for its region", failure.text());
+    if (failure.happened()) refuse("a question for its region", failure.text(), kSwitchOffAndOn);
     return setup;
 }
 
@@ -190,7 +260,7 @@ void GenicamCamera::start() {
     const unsigned payload = arv_camera_get_payload(camera, failure.slot());
     if (link_.frame_bytes == 0 && arv_camera_is_gv_device(camera))  // before the thread runs
         link_ = {static_cast<int>(arv_camera_gv_get_packet_size(camera, failure.slot())), payload};
-    transfer_ = from_seconds(settings_.transfer_ms ? *settings_.transfer_ms / 1e3 : payload / 125e6);
+    transfer_ = from_seconds(settings_.transfer_ms ? *settings_.transfer_ms / 1e3 : payload / link_speed(camera));
     device_->stream.reset(arv_camera_create_stream(camera, nullptr, nullptr, failure.slot()));
     if (!device_->stream)
         throw DeviceError(name_, fmt::format("its stream cannot be opened ({})", failure.text()),

@@ -71,7 +71,7 @@ private:
     void set_format_and_region();
     void set_exposure_and_gain();
     void set_trigger();
-    [[noreturn]] void refuse(const std::string& what, const std::string& why) const;
+    [[noreturn]] void refuse(const std::string& what, const std::string& why, const std::string& remedy) const;
     void start();
     void run(const std::stop_token& stop);
     bool receive();

@@ -117,10 +117,12 @@ void PairedCameras::refuse(std::chrono::milliseconds patience) const {
     if (!nearest_)
         throw DeviceError("Cameras", fmt::format("no pair was exposed after the light in {} ms", patience.count()),
                           "Raise the frame rate of both, and look at the network for other traffic.");
-    throw DeviceError("Cameras",
-                      fmt::format("the two do not expose together: their nearest exposures are {:.1f} ms apart",
-                                  1e3 * seconds(*nearest_)),
-                      "Let one camera trigger the other, or both by one line, and give both the same exposure.");
+    throw DeviceError(
+        "Cameras",
+        fmt::format("the two do not expose together: their nearest exposures are {:.1f} ms apart",
+                    1e3 * seconds(*nearest_)),
+        "Let one camera trigger the other, or both by one line, and give both the same exposure. If they do expose "
+        "together, one's pictures travel longer: give that camera so much more \"transfer_ms\" in room.json.");
 }
 
 std::string PairedCameras::doubt() const {

@@ -65,6 +65,13 @@ struct PatientTracker::Attempt {
     std::vector<Seen> left, right;
 };
 
+TrackingSettings tracking_settings_for(const MarkerDesign& design) {
+    TrackingSettings settings;
+    settings.design = design;
+    settings.markers.sticker_ratio = design.sticker_diameter_mm / design.disc_diameter_mm;
+    return settings;
+}
+
 PatientTracker::PatientTracker(const RigCalibration& rig, const TrackingSettings& settings)
     : rig_(rig), settings_(settings) {
     settings_.markers.sticker_ratio = settings.design.sticker_diameter_mm / settings.design.disc_diameter_mm;

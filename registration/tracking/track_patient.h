@@ -24,6 +24,9 @@ struct TrackingSettings {
     int set_aside_after = 5;  ///< poses running without a marker that has moved; as many in its place take it back
 };
 
+/// For markers of that design.
+TrackingSettings tracking_settings_for(const MarkerDesign& design);
+
 /// A marker that does not stand where it stood against the others: it slipped, or something else was taken for it.
 struct MarkerDoubt {
     int marker = -1;          ///< index into the reference markers

@@ -51,6 +51,13 @@ TEST_F(CommandsTest, StagesOnFilesFindThePatientWithinAMillimetreOfTheTruth) {
         run_planlight("track room/frames --rig room/rig.json --capture room/capture --out poses.json --json", root());
     ASSERT_EQ(track.exit_code, 0) << track.err;
     EXPECT_EQ(json::parse(track.out)["poses"], 4);
+    // Its discs are of 8 mm: as others they do not meet in space, and what to do is to say their size.
+    const auto other = run_planlight(
+        "track room/frames --rig room/rig.json --capture room/capture --out other.json --markers 12/24", root());
+    EXPECT_EQ(other.exit_code, 6);
+    EXPECT_NE(other.err.find("as discs of some 8 mm"), std::string::npos) << other.err;
+    EXPECT_NE(other.err.find("--markers DISC/STICKER"), std::string::npos) << other.err;
+    EXPECT_EQ(run_planlight("track room/frames --rig room/rig.json --out other.json --markers 8", root()).exit_code, 3);
     const auto picture = run_planlight(
         "project case --rig room/rig.json --registration registration.json --poses poses.json --out light.png --json",
         root());

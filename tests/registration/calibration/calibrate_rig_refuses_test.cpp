@@ -88,6 +88,31 @@ TEST(CalibrateRigRefuses, ABoardOfAnotherCount) {
     expect_refused(calibrate_rig(poses, wrong, 800, 600), "do not lie as on a charuco 9x7");
 }
 
+/// A printer whose feed is long: the cameras' pixels seem to be wider than high, both alike, and nothing else is odd.
+TEST(CalibrateRigRefuses, ABoardThatWasStretchedInPrinting) {
+    const auto of_board = [](double stretch) {
+        test::IdealRoom room = test::ideal_room();
+        for (RigidTransform& pose : room.rig_from_board) {  // the same way up in all poses, as most people hold it
+            const Vector3d middle = pose * Vector3d(125, 87.5, 0), normal = pose.linear().col(2);
+            pose.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal).toRotationMatrix();
+            pose.linear().col(1) *= stretch;
+            pose.translation() = middle - pose.linear() * Vector3d(125, 87.5, 0);
+        }
+        return calibrated(room, room.observe(), false);
+    };
+    const auto says = [](const Calibration& c) {
+        return std::ranges::any_of(c.warnings,
+                                   [](const std::string& w) { return w.find("its height") != std::string::npos; });
+    };
+    const Calibration good = of_board(1), bad = of_board(1.0035);
+    ASSERT_FALSE(good.refusal) << good.refusal->reason;
+    EXPECT_FALSE(says(good));
+    ASSERT_FALSE(bad.refusal) << bad.refusal->reason;
+    EXPECT_TRUE(says(bad));
+    expect_refused(of_board(1.01), "longer in its height");
+    expect_refused(of_board(0.99), "shorter in its height");
+}
+
 TEST(CalibrateRigRefuses, CamerasThatAreSwapped) {
     const test::IdealRoom room = test::ideal_room();
     auto poses = room.observe();

@@ -62,6 +62,27 @@ TEST(GenicamCamera, ACameraThatIsNotThereIsSaid) {
     }
 }
 
+TEST(GenicamCamera, WhatItDoesNotTakeIsAnsweredWithWhatItTakes) {
+    const OneAtATime turn;
+    ServedCamera camera(small_camera());
+    const auto remedy = [](GenicamSettings settings) -> std::string {
+        settings.device = "T-17";
+        FrameBell bell;
+        const SteadyClock clock;
+        try {
+            GenicamCamera(std::move(settings), bell, clock);
+        } catch (const DeviceError& error) {
+            return error.remedy;
+        }
+        return "taken";
+    };
+    GenicamSettings format, line;
+    format.pixel_format = "BayerRG8";
+    line.line = "Line9";
+    EXPECT_NE(remedy(format).find("a grey one of these: Mono8"), std::string::npos) << remedy(format);
+    EXPECT_NE(remedy(line).find("\"line\""), std::string::npos) << remedy(line);
+}
+
 TEST(GenicamCamera, PicturesComeWithTheTimeOfTheirExposure) {
     const OneAtATime turn;
     ServedCameraSettings served = small_camera();
