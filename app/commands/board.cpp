@@ -34,7 +34,8 @@ int run_board(const BoardOptions& options) {
         std::cout << json_text(result) << '\n';
     else
         fmt::print(
-            "{} and {}: {}, {:.1f} x {:.1f} mm. Print at 100 %, glue it on a flat plate, measure its width, and give "
+            "{} and {}: {}, {:.1f} x {:.1f} mm. Print at 100 %, glue it on a flat plate, measure its width and its "
+            "height (both must be right), and give "
             "the\n"
             "measured square to `calibrate --board`.\n",
             png.string(), pdf.string(), text_of(board), board.width_mm(), board.height_mm());

@@ -53,16 +53,27 @@ double off_plane(const BoardCorners& corners, const BoardSpec& board) {
     return std::sqrt(sum / static_cast<double>(count)) * board.width_mm() / board.square_mm;
 }
 
+/// What may be wrong with a board of which the pictures show another, or none.
+std::string counted_again(const BoardSpec& board) {
+    if (board.kind == BoardSpec::Kind::chessboard)
+        return "Check the board's kind and its count of squares (a chessboard by its inner corners).";
+    return "Check the board's kind and its count of squares; its markers must be of the dictionary DICT_4X4 and begin "
+           "as "
+           "those of `planlight board` (boards of other programs may begin with a marker in the corner).";
+}
+
 std::optional<Refusal> judge_picture(const PoseObservation& pose, DeviceName camera, const BoardSpec& board,
                                      const CalibrationSettings& s) {
     const CameraObservation& seen = view_of(pose, camera);
     if (seen.corners.size() == 0) return std::nullopt;
     const std::string where = fmt::format("{}, {}", pose.name, text_of(camera));
-    constexpr double kOffPlane = 0.15;
-    if (const double off = off_plane(seen.corners, board); off > kOffPlane)
+    // A lens bends the board by a share of its width, however small its squares are.
+    constexpr double kOffPlane = 0.15, kOffPlaneByColumns = 0.015;
+    if (const double off = off_plane(seen.corners, board);
+        off > std::max(kOffPlane, kOffPlaneByColumns * board.columns))
         return Refusal{
             fmt::format("{}: the corners do not lie as on a {} (off by {:.2f} squares)", where, text_of(board), off),
-            "Count the board's squares again (a chessboard by its inner corners), or flatten the board."};
+            counted_again(board) + " Or flatten the board."};
     if (seen.saturated_share > s.max_saturated)
         return Refusal{
             fmt::format("{}: {:.0f} % of the board is saturated under white light", where, 100 * seen.saturated_share),
@@ -122,9 +133,7 @@ std::optional<Refusal> judge_pictures(const std::vector<PoseObservation>& poses,
         if (found < s.least_poses)
             return Refusal{fmt::format("the {} sees a {} in {} of {} poses; {} are the least", text_of(camera),
                                        text_of(board), found, poses.size(), s.least_poses),
-                           found == 0
-                               ? "Check the board's kind and its count of squares (a chessboard by its inner corners)."
-                               : "Capture 10 to 15 poses that both cameras see."};
+                           found == 0 ? counted_again(board) : "Capture 10 to 15 poses that both cameras see."};
     }
     int width[2] = {}, height[2] = {};
     for (const PoseObservation& pose : poses)
