@@ -309,7 +309,9 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
         return ruling;
     }
     ruling.trust = LightTrust::aligned;
-    ruling.headline = "The plan is on the skin.";
+    const auto bright = std::ranges::find(items_, false, &Item::dim);
+    const bool alone = bright != items_.end() && std::ranges::any_of(items_, &Item::dim);
+    ruling.headline = alone ? fmt::format("\"{}\" is on the skin.", bright->name) : "The plan is on the skin.";
     ruling.details = {fmt::format("Measured by the cameras: 95 % of the light within {} mm of the plan.",
                                   said(std::max(0.1, last_->off_mm)))};
     constexpr double kMostOfIt = 0.75;

@@ -56,9 +56,11 @@ Status status_of(const Session& session, const Session::Update& update, const Li
     Status status{aligned ? StatusKind::aligned : StatusKind::check, ruling.headline, details};
     const std::string hidden = sentence_of_hidden(session);
     if (!hidden.empty()) status.details.push_back(hidden);
-    if (aligned && (partly_lit || !hidden.empty())) status.headline = "What is shown of the plan is on the skin.";
-    if (const auto item = session.item_of_moment(); aligned && item && *item < session.drawing().items.size())
-        status.headline = fmt::format("\"{}\" is on the skin.", session.drawing().items[*item].name);
+    const auto item = session.item_of_moment();
+    if (aligned && !item && (partly_lit || !hidden.empty()))
+        status.headline = "What is shown of the plan is on the skin.";
+    if (aligned && item && *item < session.drawing().items.size() && partly_lit)
+        status.headline = fmt::format("What is shown of \"{}\" is on the skin.", session.drawing().items[*item].name);
     if (const std::string bare = sentence_of_bare(session); aligned && !session.item_of_moment() && !bare.empty())
         status.details.push_back(bare);
     return status;

@@ -289,7 +289,9 @@ TEST(LightGate, ADimItemIsHeldAgainstTheLightOnlyWhereItIsSeenAside) {
     check.items = {item("Hole 1", 8, 8, 0.1), item("Hole 2", 0, 6, 0)};
     check.items[1].dim = true;
     check.items[1].lit_segments = 12;
-    EXPECT_EQ(after(gate, now, 10, check).trust, LightTrust::aligned);
+    const auto alone = after(gate, now, 10, check);
+    EXPECT_EQ(alone.trust, LightTrust::aligned);
+    EXPECT_EQ(alone.headline, "\"Hole 1\" is on the skin.");
     for (const int seen : {2, 5}) {
         check.items[1].seen = seen;
         check.items[1].off_mm = 1.6;
