@@ -90,7 +90,8 @@ ResumeOffer resume_offer(LastMatch last, const fs::path& recording, const Case& 
 }
 
 std::optional<LastSession> last_session(const fs::path& folder) {
-    constexpr auto kOldest = std::chrono::hours(12), kAhead = std::chrono::minutes(1);  // the clock may be set back
+    constexpr auto kOldest = std::chrono::hours(12);
+    constexpr auto kAhead = std::chrono::minutes(1);  // the clock may be set back
     const auto now = fs::file_time_type::clock::now();
     std::vector<std::pair<fs::file_time_type, fs::path>> recordings;
     std::error_code fault;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "planning_io/dicom/rt_struct.h"
 #include "planning_io/plan/contour_stack.h"
@@ -35,7 +36,9 @@ public:
     std::string nothing_to_draw() const {
         if (roi_.contours.empty()) return "has no contours";
         if (said_.text("kind")) return {};
-        if (const std::string what = no_organ(roi_); !what.empty())
+        // Of targets and outlines some systems draw the borders that are wanted on the skin.
+        const std::set<std::string> never{"MARKER", "ISOCENTER", "REGISTRATION", "BOLUS", "SUPPORT", "FIXATION"};
+        if (const std::string what = no_organ(roi_); never.contains(roi_.interpreted_type))
             return fmt::format(
                 "is {} by its type ({}), nothing to be lit (its description `kind=osteotomy_line` or `kind=borehole` "
                 "says otherwise)",

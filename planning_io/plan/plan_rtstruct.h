@@ -10,8 +10,8 @@ namespace planlight {
 /// A plan from a DICOM RT Structure Set, parsed in a child process. Of each ROI: CLOSED_PLANAR contours are closed
 /// osteotomy lines, OPEN_PLANAR and OPEN_NONPLANAR open ones, POINT boreholes ("diameter_mm=7 depth_mm=6" in the ROI's
 /// description); names and colours are the ROI's. An ROI with contours at three heights or more is a solid, no line:
-/// left out, and noted, as are ROIs without contours and those that are a marker, a target or the like by their type.
-/// Its frame of reference must be the CT's
+/// left out, and noted, as are ROIs without contours and those that are a marker, an isocentre or the like by their
+/// type. Its frame of reference must be the CT's
 /// (`settings.frame_of_reference_uid`). Files that `write_plan_rtstruct` wrote give every item back, to the 16
 /// characters that DICOM has for a number.
 PlanImport read_rtstruct(const std::filesystem::path& file, const PlanImportSettings& settings);

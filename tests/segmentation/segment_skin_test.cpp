@@ -220,6 +220,7 @@ TEST(SegmentSkin, RefusesVolumesWithoutSkin) {
 TEST(SegmentSkin, SaysThatTheValuesWereCutOff) {
     const auto said = [](double low, double high, double slope) {
         Volume scan = bare().scan;
+        scan.values[0] = 2000;  // a filling
         for (auto& v : scan.values) v = static_cast<float>(slope * (std::clamp<double>(v, low, high) - low));
         try {
             segment_skin(scan);
