@@ -203,6 +203,7 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         if (unseen && model.light_on) {
             session.post(OperatorAction::dark, AskedBy::program);
             if (projector) projector->go_dark();
+            autoplay.pressed(OperatorAction::dark);  // by whoever put the window away
         }
         if (projector) {
             projector->window_lives();
@@ -222,7 +223,7 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
             window.say(session.post(action));
         // After the post: what the session hands over from now on is no light any more.
         if (projector && (action == OperatorAction::dark || action == OperatorAction::stop)) projector->go_dark();
-        if (options.autoplay && !unseen && meter.idle_s() >= options.idle_first_s) {
+        if (options.autoplay && meter.idle_s() >= options.idle_first_s) {
             const OperatorAction by_itself = autoplay.next(model);
             session.post(by_itself, AskedBy::program);
             begun = begun || by_itself != OperatorAction::none;

@@ -8,25 +8,28 @@ command -v xdotool >/dev/null || { echo "skipped: xdotool is not installed"; exi
 failed=0
 check() { if [ "$2" = 1 ]; then echo "ok   $1"; else echo "FAIL $1 ($3)"; failed=1; fi; }
 look() { import -window root -crop 800x600+1920+0 +repage "$folder/$1.png"; }
-lit_pixels() { look light; convert "$folder/light.png" -colorspace Gray -threshold 8% -format '%[fx:mean*w*h]' info:; }
-lit() { awk "BEGIN { exit !($(lit_pixels) > 500 && $(lit_pixels) < 40000) }"; }  # a drawing, not stripes
+measured() { look light; awk "BEGIN { exit !($(convert "$folder/light.png" -format "%[fx:$1]" info:) $2) }"; }
+lit() { measured mean.g-mean.b '> 0.0003'; }  # the plan's green, and no stripes of white
+bright() { measured maxima '> 0.05'; }
 until_lit() { for i in $(seq 300); do lit && return 0; kill -0 $session 2>/dev/null || return 1; sleep 0.3; done; return 1; }
 rm -rf "$folder/case" "$folder"/*.png
 "$PLANLIGHT" prepare $patient --plan "$PLAN" --out "$folder/case" >/dev/null 2>"$folder/errors" || { cat "$folder/errors"; exit 1; }
-"$PLANLIGHT" session "$folder/case" --volume $patient --preset paper --projector DUMMY1 --autoplay --end-after-s 60 \
+"$PLANLIGHT" session "$folder/case" --volume $patient --preset paper --projector DUMMY1 --autoplay --end-after-s 120 \
   --record none 2>"$folder/errors" & session=$!
 trap 'kill $session 2>/dev/null' EXIT
 until_lit; check "light on the second monitor" $((1 - $?)) "$(cat "$folder/errors")"
-window=$(xdotool search --name "^Planlight" | tail -1)
+window=$(xdotool search --name "^Planlight$" | tail -1)
 xdotool windowminimize "$window"
 sleep 1.5
 dark=1
-for i in $(seq 8); do lit && dark=0; sleep 0.3; done
-check "dark while the window is minimised" $dark "$(lit_pixels) lit pixels"
+for i in $(seq 8); do bright && dark=0; sleep 0.3; done
+check "dark while the window is minimised" $dark "there is light"
 xdotool windowmap "$window"
 sleep 1
 import -window root "$folder/back.png"
-until_lit; check "light again after the window is back, by another press" $((1 - $?)) "$(cat "$folder/errors")"
+bright; check "and dark when it is back, until somebody presses Track" $?
+xdotool windowfocus "$window" key t
+until_lit; check "light again by that press" $((1 - $?)) "$(cat "$folder/errors")"
 kill -INT $session; wait $session; code=$?
 trap - EXIT
 check "the session ends as asked" $((code == 0)) "exit code $code: $(cat "$folder/errors")"

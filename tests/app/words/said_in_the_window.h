@@ -115,7 +115,8 @@ inline const std::set<std::string> kNotShown{
     // What a camera of a room file does not take: the names of its standard, in a place of a name.
     "a gain of {}", "a question for its exposure", "a question for its region", "an exposure of {} ms",
     "continuous acquisition", "the exposure that it had, {:.2f} ms", "the gain that it had, {:.1f}",
-    "the pixel format ", "the region {} {} {} {}", "the trigger ", "{} frames a second", "exposure_ms", "frames_hz",
+    "the pixel format ", "the region {} {} {} {}", "the trigger ", "{} frames a second", "{}exposure_ms{}",
+    "{}frames_hz{}",
     // Why a volume is refused, before there is a case.
     "What was found is no human head: the largest ball within it has a radius of {:.0f} mm (a newborn's head holds one "
     "of 45 mm)",
