@@ -236,6 +236,8 @@ GenicamCamera::Setup GenicamCamera::configure() {
     setup.notes = switch_off_automatics(camera);
     const Shutter shutter = shutter_of(camera);
     setup.global_shutter = shutter != Shutter::other && settings_.global_shutter.value_or(shutter == Shutter::global);
+    // The rate of before may leave no room for this exposure: it is set before it as well, if it can be.
+    if (settings_.frames_hz) arv_camera_set_frame_rate(camera, *settings_.frames_hz, GenicamFailure().slot());
     set_exposure_and_gain();
     set_trigger();
     const double exposure_us = arv_camera_get_exposure_time(camera, failure.slot());

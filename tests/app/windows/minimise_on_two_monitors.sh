@@ -7,8 +7,8 @@ folder=$1 patient=/usr/share/doc/invesalius-examples/examples/Cranium.inv3
 command -v xdotool >/dev/null || { echo "skipped: xdotool is not installed"; exit 77; }
 failed=0
 check() { if [ "$2" = 1 ]; then echo "ok   $1"; else echo "FAIL $1 ($3)"; failed=1; fi; }
-look() { import -window root -crop 800x600+1920+0 +repage "$folder/$1.png"; }
-measured() { look light; awk "BEGIN { exit !($(convert "$folder/light.png" -format "%[fx:$1]" info:) $2) }"; }
+photograph() { import -window root -crop 800x600+1920+0 +repage "$folder/$1.png"; }
+measured() { photograph light; awk "BEGIN { exit !($(convert "$folder/light.png" -format "%[fx:$1]" info:) $2) }"; }
 lit() { measured mean.g-mean.b '> 0.0003'; }  # the plan's green, and no stripes of white
 bright() { measured maxima '> 0.05'; }
 until_lit() { for i in $(seq 300); do lit && return 0; kill -0 $session 2>/dev/null || return 1; sleep 0.3; done; return 1; }
