@@ -1,5 +1,6 @@
 #include "projection/stroke_places.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <unordered_map>
 
@@ -184,6 +185,18 @@ std::vector<std::optional<StrokePlace>> places_of_items(const PlanDrawing& drawi
     return places;
 }
 
+namespace {
+
+/// Of a small figure, a hole say, what is seen stands for all of it: no skin rises under a few millimetres alone.
+bool is_small(const Stroke& stroke) {
+    constexpr double kSmall_mm = 25;
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : stroke.points_in_ct) box.extend(p);
+    return box.isEmpty() || box.diagonal().norm() < kSmall_mm;
+}
+
+}  // namespace
+
 std::vector<StrokeSegment> crowded_segments_of(const PlanDrawing& drawing, const std::vector<StrokeSegment>& segments,
                                                const CheckLightSettings& settings) {
     const StrokesNear near(drawing, settings.search_mm);
@@ -194,7 +207,8 @@ std::vector<StrokeSegment> crowded_segments_of(const PlanDrawing& drawing, const
     for (std::size_t s = 0; s < drawing.strokes.size(); ++s) {
         const Stroke& stroke = drawing.strokes[s];
         if (stroke.kind == StrokeKind::label || stroke.kind == StrokeKind::tick ||
-            stroke.kind == StrokeKind::check_mark || stroke.item < 0 || !told[static_cast<std::size_t>(stroke.item)])
+            stroke.kind == StrokeKind::check_mark || stroke.item < 0 || is_small(stroke) ||
+            !told[static_cast<std::size_t>(stroke.item)])
             continue;
         StrokeSegment segment{stroke.item, false, {}, 0};
         for (const StrokePlace& place : places_along(stroke, settings.spacing_mm)) {

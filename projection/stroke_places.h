@@ -29,7 +29,7 @@ struct StrokeSegment {
 std::vector<StrokeSegment> segments_of(const PlanDrawing& drawing, const CheckLightSettings& settings);
 
 /// What `segments_of` leaves out because other items are lit too near, in segments of the same length: of items that
-/// have segments; the others are told whole (`patches_of`).
+/// have segments; the others are told whole (`patches_of`), and small figures of which a part is seen.
 std::vector<StrokeSegment> crowded_segments_of(const PlanDrawing& drawing, const std::vector<StrokeSegment>& segments,
                                                const CheckLightSettings& settings);
 

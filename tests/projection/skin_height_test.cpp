@@ -221,6 +221,23 @@ TEST(SkinHeight, ALineBesideAnotherForMostOfItsWayIsMeasuredInPartOnly) {
     }
 }
 
+/// Holes at the corners of an outline are crossed by its line: what is seen of such a hole stands for all of it.
+TEST(SkinHeight, HolesThatALineLeadsThroughAreMeasured) {
+    const RigCalibration rig = test::rig_before_ball();
+    Plan plan;
+    plan.boreholes = {hole("B1", 0.1, 0.25, 7), hole("B2", 0.5, 0.25, 7), hole("B3", 0.5, 0.6, 7),
+                      hole("B4", 0.1, 0.6, 7)};
+    OsteotomyLine outline;
+    outline.name = "Outline";
+    outline.closed = true;
+    for (const Borehole& corner : plan.boreholes) outline.points_in_ct.push_back(corner.position_in_ct);
+    plan.osteotomy_lines.push_back(outline);
+    const PlanDrawing drawing = drawing_of(plan);
+    const LightCheck check =
+        check_light(drawing, test::ball(), rig, RigidTransform::Identity(), test::pictures_of(drawing, rig, {}));
+    EXPECT_EQ(ruling_of(check).headline, "The plan is on the skin.");
+}
+
 /// The cameras see a third of the line; on the rest there is no light at all.
 TEST(SkinHeight, ALineOfWhichTheCamerasSeeAThirdIsMeasuredInPartOnly) {
     RigCalibration rig = test::rig_before_ball();
