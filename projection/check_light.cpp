@@ -1,6 +1,5 @@
 #include "projection/check_light.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -12,6 +11,7 @@
 #include "projection/light_depth.h"
 #include "projection/render_drawing.h"
 #include "projection/stroke_places.h"
+#include "projection/sum_up_light.h"
 
 namespace planlight {
 namespace {
@@ -67,20 +67,13 @@ double clear_depth(const LightDepth& depth, const CheckLightSettings& settings) 
     return std::abs(depth.mm) > std::max(settings.least_depth_mm, 3 * depth.sigma_mm) ? depth.mm : 0;
 }
 
-/// Side by side on one stroke, of which every `step`-th stretch is looked at.
-bool next_to(const SeenSegment& a, const SeenSegment& b, std::size_t step, const CheckLightSettings& settings) {
-    constexpr double kTogether = 2.2, kSameWay = 0.7;  // of a dashed line each dash is a stretch, 10 mm from the next
-    return !a.tick && !b.tick && a.item == b.item && a.sideways_in_ct.dot(b.sideways_in_ct) > kSameWay &&
-           (a.p_in_ct - b.p_in_ct).norm() < kTogether * settings.segment_mm * static_cast<double>(step);
-}
-
 /// Of one stretch: by itself and those beside it where they clearly tell another depth than all of the item does, for
 /// the skin may have risen under a part of it.
 double depth_at(std::size_t i, const std::vector<LookedAt*>& item, double of_item_mm, std::size_t step,
                 const CheckLightSettings& settings) {
     std::vector<LookedAt*> together{item[i]};
-    if (i > 0 && next_to(item[i - 1]->segment, item[i]->segment, step, settings)) together.push_back(item[i - 1]);
-    if (i + 1 < item.size() && next_to(item[i + 1]->segment, item[i]->segment, step, settings))
+    if (i > 0 && side_by_side(item[i - 1]->segment, item[i]->segment, step, settings)) together.push_back(item[i - 1]);
+    if (i + 1 < item.size() && side_by_side(item[i + 1]->segment, item[i]->segment, step, settings))
         together.push_back(item[i + 1]);
     const auto depth = together.size() > 1 ? depth_of(together, settings) : std::nullopt;
     if (!depth || clear_depth({depth->mm - of_item_mm, depth->sigma_mm}, settings) == 0) return of_item_mm;
@@ -128,105 +121,6 @@ void join(std::vector<LookedAt>& looked, std::size_t step, const CheckLightSetti
         for (std::size_t k = 0; k < of_item[i].size(); ++k)
             check.segments.push_back(
                 joined(*of_item[i][k], depth_at(k, of_item[i], depth_mm, step, settings), settings));
-    }
-}
-
-/// The shift along the skin that explains an item's segments best: least squares over their sides, with Huber weights.
-void find_shift(const std::vector<const SeenSegment*>& seen, ItemLight& item) {
-    constexpr int kRounds = 5;
-    constexpr double kHuber = 1.5, kToldShare = 0.1;
-    Vector3d shift = Vector3d::Zero();
-    Matrix3d information = Matrix3d::Zero(), inverse = Matrix3d::Zero();
-    for (int round = 0; round < kRounds; ++round) {
-        information.setZero();
-        Vector3d right = Vector3d::Zero();
-        for (const SeenSegment* s : seen) {
-            const double off = (s->off_mm - s->sideways_in_ct.dot(shift)) / s->sigma_mm;
-            const double w =
-                (round == 0 || std::abs(off) < kHuber ? 1 : kHuber / std::abs(off)) / std::pow(s->sigma_mm, 2);
-            information += w * s->sideways_in_ct * s->sideways_in_ct.transpose();
-            right += w * s->off_mm * s->sideways_in_ct;
-        }
-        // Only in the directions that the sides tell: a straight line tells one, a circle two.
-        const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(information);
-        inverse.setZero();
-        int told = 0;
-        for (int k = 0; k < 3; ++k) {
-            if (axes.eigenvalues()[k] < kToldShare * axes.eigenvalues()[2]) continue;
-            inverse += axes.eigenvectors().col(k) * axes.eigenvectors().col(k).transpose() / axes.eigenvalues()[k];
-            ++told;
-        }
-        item.one_direction_only = told < 2;
-        shift = inverse * right;
-    }
-    item.shift_in_ct = shift;
-    item.off_mm = shift.norm();
-    const Vector3d way = item.off_mm > 1e-6 ? Vector3d(shift / item.off_mm) : seen.front()->sideways_in_ct;
-    item.sigma_mm = std::sqrt(way.dot(inverse * way));
-}
-
-/// Two directions along the skin are told when the sides of what was seen span them.
-bool tells_whole(const std::vector<SeenSegment>& segments) {
-    constexpr double kTold = 0.05;  // of the best told direction's weight
-    constexpr int kLeast = 3;
-    Matrix3d sides = Matrix3d::Zero();
-    int seen = 0;
-    for (const SeenSegment& s : segments) {
-        if (!s.seen) continue;
-        sides += s.sideways_in_ct * s.sideways_in_ct.transpose();
-        ++seen;
-    }
-    const auto axes = Eigen::SelfAdjointEigenSolver<Matrix3d>(sides, Eigen::EigenvaluesOnly).eigenvalues();
-    return seen >= kLeast && axes[1] > kTold * axes[2] && axes[1] > 1;
-}
-
-void sum_up(LightCheck& check) {
-    std::vector<double> sizes, sigmas, backgrounds, brighter;
-    for (const SeenSegment& s : check.segments) {
-        if (s.background > 0) backgrounds.push_back(s.background);
-        if (!s.tick || s.seen) ++check.expected;
-        if (!s.seen) continue;
-        if (!s.tick) ++check.lit_seen;
-        sizes.push_back(std::abs(s.off_mm));
-        sigmas.push_back(s.sigma_mm);
-        brighter.push_back(s.brighter);
-    }
-    check.brighter = quantile(std::move(brighter), 0.9);
-    check.seen = static_cast<int>(sizes.size());
-    check.off_mm = quantile(sizes, 0.95);
-    check.most_mm = quantile(sizes, 2.0 / 3);
-    check.median_mm = median(std::move(sizes));
-    check.sigma_mm = median(std::move(sigmas));
-    check.background = median(std::move(backgrounds));
-    check.told_whole = tells_whole(check.segments);
-}
-
-/// Of an item's stretches, in their order. Beside one that lies aside another may lie so far aside that it is not
-/// found.
-double part_off_mm(const std::vector<const SeenSegment*>& stretches, std::size_t step,
-                   const CheckLightSettings& settings) {
-    double most_mm = 0;
-    for (std::size_t k = 1; k < stretches.size(); ++k) {
-        const SeenSegment &a = *stretches[k - 1], &b = *stretches[k];
-        if (!next_to(a, b, step, settings) || (a.seen && b.seen && a.off_mm * b.off_mm < 0)) continue;
-        const double off_a = std::abs(a.off_mm), off_b = std::abs(b.off_mm);  // 0 where it is not seen
-        most_mm = std::max(most_mm, a.seen && b.seen ? std::min(off_a, off_b) : std::max(off_a, off_b));
-    }
-    return most_mm;
-}
-
-void sum_up_items(LightCheck& check, std::size_t step, const CheckLightSettings& settings) {
-    for (std::size_t i = 0; i < check.items.size(); ++i) {
-        std::vector<const SeenSegment*> seen, stretches;
-        for (const SeenSegment& s : check.segments) {
-            if (s.item != static_cast<int>(i)) continue;
-            if (!s.tick) stretches.push_back(&s);
-            if (!s.tick || s.seen) ++check.items[i].segments;
-            if (s.seen) seen.push_back(&s);
-        }
-        check.items[i].seen = static_cast<int>(seen.size());
-        if (!seen.empty()) find_shift(seen, check.items[i]);
-        check.items[i].part_off_mm = part_off_mm(stretches, step, settings);
     }
 }
 
@@ -381,9 +275,7 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
         if (looks[0].asked || looks[1].asked) looked.push_back(looked_at(segment, looks, cameras_in_ct));
     }
     join(looked, step, p.settings, check);
-    sum_up_items(check, step, p.settings);
-    std::erase_if(check.segments, [&](const SeenSegment& s) { return p.dim(s.item); });
-    sum_up(check);
+    sum_up_light(step, p.settings, check);
     constexpr double kMostSeen = 0.8, kAside_mm = 1;  // else light is where it was looked for
     const bool missed = check.expected > 0 && (check.seen_share() < kMostSeen || check.off_mm > kAside_mm);
     // As long as nothing is found, every second look: it costs more than the rest.

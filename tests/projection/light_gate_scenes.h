@@ -28,4 +28,12 @@ inline ItemLight item(const std::string& name, int seen, int segments, double of
     return light;
 }
 
+/// Updates 40 ms apart with the same measurement; the last ruling.
+inline LightGate::Ruling after(LightGate& gate, Instant& now, int updates, const std::optional<LightCheck>& check,
+                               bool lit = true) {
+    LightGate::Ruling ruling;
+    for (int i = 0; i < updates; ++i) ruling = gate.step(now += std::chrono::milliseconds(40), lit, check);
+    return ruling;
+}
+
 }  // namespace planlight::test

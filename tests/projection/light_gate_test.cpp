@@ -11,16 +11,9 @@ namespace planlight {
 namespace {
 
 using namespace std::chrono_literals;
+using test::after;
 using test::item;
 using test::seen_at;
-
-/// Updates 40 ms apart with the same measurement; the last ruling.
-LightGate::Ruling after(LightGate& gate, Instant& now, int updates, const std::optional<LightCheck>& check,
-                        bool lit = true) {
-    LightGate::Ruling ruling;
-    for (int i = 0; i < updates; ++i) ruling = gate.step(now += 40ms, lit, check);
-    return ruling;
-}
 
 /// What a look says of light found as one `far_mm` aside, while `seen` of 40 strokes are mistaken near their place.
 LightCheck found_far(double far_mm, double near_mm, int seen) {
@@ -247,106 +240,6 @@ TEST(LightGate, AHandInTheLightIsNoReasonToGoDark) {
     const auto ruling = after(gate, now, 20, hand);
     EXPECT_FALSE(ruling.stop);
     EXPECT_EQ(ruling.trust, LightTrust::look);
-}
-
-TEST(LightGate, EveryItemThatIsLitMustBeMeasured) {
-    LightGate gate;
-    Instant now{};
-    gate.verify(now);
-    LightCheck check = seen_at(0.1);
-    check.items = {item("Hole 1", 8, 8, 0.1), item("Hole 2", 0, 6, 0), item("Far side", 0, 0, 0, false)};
-    const auto covered = after(gate, now, 10, check);
-    EXPECT_EQ(covered.trust, LightTrust::look);
-    EXPECT_NE(covered.headline.find("Hole 2"), std::string::npos) << covered.headline;
-    check.items[1] = item("Hole 2", 5, 6, 1.3);
-    const auto aside = after(gate, now, 10, check);
-    EXPECT_NE(aside.headline.find("1.3 mm"), std::string::npos) << aside.headline;
-    check.items[1] = item("Hole 2", 5, 6, 0.2);
-    EXPECT_EQ(after(gate, now, 10, check).trust, LightTrust::aligned) << "what is not lit need not be measured";
-}
-
-// A head that turns away and back: what was measured before was another moment's light.
-TEST(LightGate, AnItemThatComesBackIntoTheLightIsMeasuredAnew) {
-    LightGate gate;
-    Instant now{};
-    gate.verify(now);
-    LightCheck both = seen_at(0.1);
-    both.items = {item("Hole 1", 8, 8, 0.1), item("Hole 2", 6, 6, 0.1)};
-    EXPECT_EQ(after(gate, now, 10, both).trust, LightTrust::aligned);
-    LightCheck one = both;
-    one.items[1] = item("Hole 2", 0, 0, 0, false);
-    EXPECT_EQ(after(gate, now, 50, one).trust, LightTrust::aligned);
-    EXPECT_EQ(after(gate, now, 2, both).trust, LightTrust::look);
-    EXPECT_EQ(after(gate, now, 1, both).trust, LightTrust::aligned);
-}
-
-// Dim light need not be seen; where it is, and lies aside, that is no green.
-TEST(LightGate, ADimItemIsHeldAgainstTheLightOnlyWhereItIsSeenAside) {
-    LightGate gate;
-    Instant now{};
-    gate.verify(now);
-    LightCheck check = seen_at(0.1);
-    check.items = {item("Hole 1", 8, 8, 0.1), item("Hole 2", 0, 6, 0)};
-    check.items[1].dim = true;
-    check.items[1].lit_segments = 12;
-    const auto alone = after(gate, now, 10, check);
-    EXPECT_EQ(alone.trust, LightTrust::aligned);
-    EXPECT_EQ(alone.headline, "\"Hole 1\" is on the skin.");
-    for (const int seen : {2, 5}) {
-        check.items[1].seen = seen;
-        check.items[1].off_mm = 1.6;
-        const auto ruling = after(gate, now, 10, check);
-        EXPECT_EQ(ruling.trust == LightTrust::aligned, seen == 2) << "a third of it may be other light";
-        if (seen == 5) {
-            EXPECT_EQ(ruling.headline, "LOOK: \"Hole 2\" lies 1.6 mm beside its place.");
-        }
-    }
-}
-
-/// A verified gate with one good item and another, whose looks, 100 ms apart, come round; how many of 100 are green.
-int green_of(const std::vector<ItemLight>& looks) {
-    LightGate gate;
-    Instant now{};
-    gate.verify(now);
-    int green = 0;
-    for (std::size_t i = 0; i < 100; ++i) {
-        LightCheck check = seen_at(0.1);
-        check.items = {item("Hole 1", 8, 8, 0.1), looks[i % looks.size()]};
-        green += gate.step(now += 100ms, true, check).trust == LightTrust::aligned;
-    }
-    return green;
-}
-
-/// Under a moving hand, or a shadow that comes and goes, an item is not green for the looks between.
-TEST(LightGate, AnItemThatIsGoodNowAndThenIsNotGreen) {
-    const ItemLight good = item("Hole 2", 6, 6, 0.2), aside = item("Hole 2", 6, 6, 1.8);
-    const ItemLight unseen = item("Hole 2", 0, 6, 0), glimpse = item("Hole 2", 2, 6, 0.2);
-    const ItemLight far_in_part = item("Hole 2", 1, 6, 2.9);
-    EXPECT_GT(green_of({good}), 95);
-    EXPECT_EQ(green_of({good, aside}), 0);
-    EXPECT_LE(green_of({glimpse, unseen, unseen, unseen, unseen, unseen, unseen, unseen, unseen, unseen}), 2);
-    EXPECT_EQ(green_of({far_in_part, far_in_part, far_in_part, glimpse, far_in_part, far_in_part, far_in_part}), 0);
-    EXPECT_GT(green_of({good, good, good, good, unseen, good, good, good, good, good}), 90) << "a hand went by once";
-    // With many strokes they take turns: at each look some items are not asked.
-    EXPECT_GT(green_of({good, item("Hole 2", 0, 0, 0), item("Hole 2", 0, 0, 0)}), 85);
-}
-
-TEST(LightGate, AnItemOfWhichTheCamerasSeeLittleIsMeasuredInPartOnly) {
-    LightGate gate;
-    Instant now{};
-    gate.verify(now);
-    LightCheck check = seen_at(0.1);
-    check.lit = 60;
-    check.items = {item("Hole 1", 8, 8, 0.1), item("Cut", 5, 5, 0.1)};
-    check.items[1].lit_segments = 20;
-    const auto part = after(gate, now, 40, check);
-    EXPECT_EQ(part.headline, "LOOK: \"Cut\" is measured in part only.");
-    EXPECT_EQ(part.details.front(), "The cameras can see about 30 % of its light: look at the rest yourself.");
-    EXPECT_FALSE(part.found_wrong);
-    check.items[1].lit_segments = 8;
-    const auto most = after(gate, now, 40, check);
-    EXPECT_EQ(most.trust, LightTrust::aligned);
-    EXPECT_EQ(most.details.back(), "They see about 70 % of the light.");
 }
 
 TEST(LightGate, LinesThatLampsOutshineAreWarnedOf) {
