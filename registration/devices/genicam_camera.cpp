@@ -2,7 +2,6 @@
 
 #include <arv.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "planning_io/types/error.h"
 #include "registration/devices/genicam_automatics.h"
 #include "registration/devices/genicam_failure.h"
+#include "registration/devices/genicam_offers.h"
 #include "registration/devices/mono_pixels.h"
 
 namespace planlight {
@@ -102,65 +102,7 @@ void GenicamCamera::refuse(const std::string& what, const std::string& why, cons
     throw DeviceError(name_, fmt::format("does not take {} ({})", what, why), remedy);
 }
 
-namespace {
-
 constexpr const char* kSwitchOffAndOn = "Switch it off and on again, and end other programs that use it.";
-
-using ListOf = const char** (*)(ArvCamera*, guint*, GError**);
-
-/// What a camera offers; empty where it does not say.
-std::vector<std::string> offered(ArvCamera* camera, ListOf list_of) {
-    guint count = 0;
-    const char** const words = list_of(camera, &count, GenicamFailure().slot());
-    std::vector<std::string> list;
-    for (guint i = 0; words != nullptr && i < count; ++i) list.emplace_back(words[i]);
-    g_free(words);
-    return list;
-}
-
-std::string remedy_of_format(ArvCamera* camera) {
-    const auto formats = offered(camera, arv_camera_dup_available_pixel_formats_as_strings);
-    if (formats.empty()) return "Give \"pixel_format\" as its manual has it.";
-    const bool grey = std::ranges::any_of(formats, [](const std::string& f) { return f.starts_with("Mono"); });
-    const std::string all = fmt::format("{}", fmt::join(formats, ", "));
-    return grey
-               ? fmt::format("Set \"pixel_format\" to a grey one of these: {}.", all)
-               : fmt::format(
-                     "It is a colour camera ({}): take a grey one, or let a \"pipeline\" turn its pictures grey.", all);
-}
-
-using BoundsOf = void (*)(ArvCamera*, double*, double*, GError**);
-
-/// `by`: of the file's unit in one of the camera's.
-std::string remedy_of_bounds(ArvCamera* camera, const char* key, BoundsOf bounds_of, double by) {
-    double least = 0, most = 0;
-    GenicamFailure failure;
-    bounds_of(camera, &least, &most, failure.slot());
-    if (failure.happened() || !(most > least)) return fmt::format("Give \"{}\" as its manual has it.", key);
-    return fmt::format(
-        "Set \"{}\" to {:.3g} to {:.3g}; where that is too little, see whether the frame rate and the "
-        "region leave room for it.",
-        key, by * least, by * most);
-}
-
-std::string remedy_of_line(ArvCamera* camera) {
-    const auto lines = offered(camera, arv_camera_dup_available_trigger_sources);
-    return lines.empty() ? std::string("Give \"line\" as its manual has it.")
-                         : fmt::format("Set \"line\" to one of these: {}.", fmt::join(lines, ", "));
-}
-
-/// Bytes a second that its pictures travel with at the most: as it says itself, else of a usual link of its kind.
-double link_speed(ArvCamera* camera) {
-    constexpr double kGigabit = 125e6, kUsb3 = 400e6;
-    GenicamFailure failure;
-    if (arv_camera_is_feature_available(camera, "DeviceLinkSpeed", failure.slot())) {
-        const double said = static_cast<double>(arv_camera_get_integer(camera, "DeviceLinkSpeed", failure.slot()));
-        if (!failure.happened() && said > 1e6) return said;
-    }
-    return arv_camera_is_uv_device(camera) ? kUsb3 : kGigabit;
-}
-
-}  // namespace
 
 void GenicamCamera::set_format_and_region() {
     ArvCamera* camera = device_->camera.get();
@@ -170,7 +112,7 @@ void GenicamCamera::set_format_and_region() {
     if (failure.happened()) refuse("continuous acquisition", failure.text(), kSwitchOffAndOn);
     const std::string format = settings_.pixel_format.empty() ? "Mono8" : settings_.pixel_format;
     arv_camera_set_pixel_format_from_string(camera, format.c_str(), failure.slot());
-    if (failure.happened()) refuse("the pixel format " + format, failure.text(), remedy_of_format(camera));
+    if (failure.happened()) refuse("the pixel format " + format, failure.text(), offered_formats(camera));
     if (!settings_.region) return;
     const auto [x, y, width, height] = *settings_.region;
     arv_camera_set_region(camera, x, y, width, height, failure.slot());
@@ -189,7 +131,7 @@ void GenicamCamera::set_exposure_and_gain() {
         arv_camera_set_exposure_time(camera, 1e3 * *settings_.exposure_ms, failure.slot());
         if (failure.happened())
             refuse(fmt::format("an exposure of {} ms", *settings_.exposure_ms), failure.text(),
-                   remedy_of_bounds(camera, "exposure_ms", arv_camera_get_exposure_time_bounds, 1e-3));
+                   offered_range(camera, "exposure_ms", arv_camera_get_exposure_time_bounds, 1e-3));
     } else if (opened_before) {
         const double was_us = 1e6 * seconds(exposure_);
         arv_camera_set_exposure_time(camera, was_us, failure.slot());
@@ -202,7 +144,7 @@ void GenicamCamera::set_exposure_and_gain() {
         arv_camera_set_gain(camera, *settings_.gain, failure.slot());
         if (failure.happened())
             refuse(fmt::format("a gain of {}", *settings_.gain), failure.text(),
-                   remedy_of_bounds(camera, "gain", arv_camera_get_gain_bounds, 1));
+                   offered_range(camera, "gain", arv_camera_get_gain_bounds, 1));
     } else if (opened_before && arv_camera_is_gain_available(camera, failure.slot())) {
         arv_camera_set_gain(camera, gain_, failure.slot());
         const double gain = arv_camera_get_gain(camera, failure.slot());
@@ -217,7 +159,7 @@ void GenicamCamera::set_trigger() {
     GenicamFailure failure;
     if (!settings_.line.empty()) {
         arv_camera_set_trigger(camera, settings_.line.c_str(), failure.slot());
-        if (failure.happened()) refuse("the trigger " + settings_.line, failure.text(), remedy_of_line(camera));
+        if (failure.happened()) refuse("the trigger " + settings_.line, failure.text(), offered_lines(camera));
         return;
     }
     arv_camera_clear_triggers(camera, failure.slot());
@@ -225,7 +167,7 @@ void GenicamCamera::set_trigger() {
     arv_camera_set_frame_rate(camera, *settings_.frames_hz, failure.slot());
     if (failure.happened())
         refuse(fmt::format("{} frames a second", *settings_.frames_hz), failure.text(),
-               remedy_of_bounds(camera, "frames_hz", arv_camera_get_frame_rate_bounds, 1));
+               offered_range(camera, "frames_hz", arv_camera_get_frame_rate_bounds, 1));
 }
 
 GenicamCamera::Setup GenicamCamera::configure() {
