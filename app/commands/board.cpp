@@ -35,9 +35,7 @@ int run_board(const BoardOptions& options) {
     else
         fmt::print(
             "{} and {}: {}, {:.1f} x {:.1f} mm. Print at 100 %, glue it on a flat plate, measure its width and its "
-            "height (both must be right), and give "
-            "the\n"
-            "measured square to `calibrate --board`.\n",
+            "height (both must be right), and give the\nmeasured square to `calibrate --board`.\n",
             png.string(), pdf.string(), text_of(board), board.width_mm(), board.height_mm());
     return 0;
 }

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <string>
 
+#include "planning_io/case/room_file.h"
 #include "planning_io/types/error.h"
 #include "registration/tracking/find_markers.h"
 
@@ -20,10 +21,7 @@ inline MarkerDesign marker_design_named(const std::string& text) {
     const bool parted = disc.ec == std::errc() && at != end && *at++ == '/';
     const auto sticker = std::from_chars(at, end, design.sticker_diameter_mm);
     const bool told = parted && sticker.ec == std::errc() && sticker.ptr == end;
-    constexpr double kLeast_mm = 2, kMost_mm = 60, kLeastRatio = 1.2, kMostRatio = 4;  // as room.json allows
-    const double ratio = design.sticker_diameter_mm / design.disc_diameter_mm;
-    if (!told || !(design.disc_diameter_mm >= kLeast_mm && design.disc_diameter_mm <= kMost_mm) ||
-        !(ratio >= kLeastRatio && ratio <= kMostRatio))
+    if (!told || !may_be_pasted(design.disc_diameter_mm, design.sticker_diameter_mm))
         throw InputError({}, fmt::format("\"{}\" is no size of markers", text),
                          "Say the diameters of the black disc and of its white sticker in mm, as 8/16.");
     return design;

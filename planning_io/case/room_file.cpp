@@ -14,6 +14,8 @@ using recording::parse_file;
 
 namespace {
 
+constexpr double kLeastDisc_mm = 2, kMostDisc_mm = 50, kLeastSticker = 1.2, kMostSticker_mm = 100;
+
 constexpr const char* kFormat = "planlight room";
 
 std::optional<double> number_in(const JsonValue& from, const char* key, double least, double most) {
@@ -132,6 +134,11 @@ void read_projector(const JsonValue& projector, const Beside& beside, RoomFile& 
 
 }  // namespace
 
+bool may_be_pasted(double disc_mm, double sticker_mm) {
+    return disc_mm >= kLeastDisc_mm && disc_mm <= kMostDisc_mm && sticker_mm >= disc_mm * kLeastSticker &&
+           sticker_mm <= kMostSticker_mm;
+}
+
 RoomFile read_room(const std::filesystem::path& file) {
     check_exists(file, "Check its name; `planlight devices --out room.json` writes a first one where cameras answer.");
     const Json json = parse_file(file, kFormat);
@@ -148,8 +155,8 @@ RoomFile read_room(const std::filesystem::path& file) {
     if (!room.recorded || root.find("projector")) read_projector(root.at("projector"), beside, room);
     if (const auto markers = root.find("markers")) {
         markers->has_only({"disc_mm", "sticker_mm"});
-        room.disc_mm = markers->at("disc_mm").number(2, 50);
-        room.sticker_mm = markers->at("sticker_mm").number(room.disc_mm * 1.2, 100);
+        room.disc_mm = markers->at("disc_mm").number(kLeastDisc_mm, kMostDisc_mm);
+        room.sticker_mm = markers->at("sticker_mm").number(room.disc_mm * kLeastSticker, kMostSticker_mm);
     }
     return room;
 }

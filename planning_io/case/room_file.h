@@ -41,6 +41,9 @@ struct RoomFile {
     double disc_mm = 8, sticker_mm = 16;  ///< of the markers, diameters
 };
 
+/// Whether markers of these diameters are any that can be followed.
+bool may_be_pasted(double disc_mm, double sticker_mm);
+
 /// Paths in it are relative to its own folder. Throws InputError for what is missing, unknown or out of range.
 RoomFile read_room(const std::filesystem::path& file);
 

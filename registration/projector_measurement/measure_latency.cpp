@@ -242,11 +242,10 @@ LatencyResult measure_latency(const LightRecording& recording, const LatencySett
                         1e3 * result.jitter_s, 1e3 * flashes.shortest_s),
             "See first whether the light is steady (the colour cycle), then flash longer.");
     if (result.median_s < -0.001)
-        return refused(result,
-                       fmt::format("the light was seen {:.1f} ms before it was ordered", -1e3 * result.median_s),
-                       "The cameras' times are not on the orders' clock: correct their offset (in room.json a shorter "
-                       "\"transfer_ms\", where "
-                       "the cameras' link is faster than it was taken to be), then measure again.");
+        return refused(
+            result, fmt::format("the light was seen {:.1f} ms before it was ordered", -1e3 * result.median_s),
+            "The cameras' times are not on the orders' clock: correct their offset (in room.json a shorter "
+            "\"transfer_ms\", where the cameras' link is faster than it was taken to be), then measure again.");
     result.unseen = unseen_changes(flashes, result);
     for (const LightDelay& delay : result.delays)
         result.late += delay.at_least_s > result.median_s + 0.75 / settings.refresh_hz;

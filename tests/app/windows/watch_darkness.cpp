@@ -146,17 +146,28 @@ void watch(const char* self, const Monitor& monitor, int rounds) {
     }
 }
 
-/// The picture expires while the driver hangs, and nothing is ordered: its black cannot be drawn, nor is anybody
-/// waiting for it.
+/// A graphics driver that hangs from a moment on. What is lit then can be taken down by the end of its process alone.
+struct Hang {
+    const char *name, *setting, *value;  ///< what the holder of the light is told
+    Instant until_fault;                 ///< from the light on
+    bool hangs_before = false;           ///< the driver hangs all that time, and the picture expires at its end
+    int signal = 0;                      ///< to the program at the fault; 0: none
+    Instant longest;
+};
+constexpr Hang kHangs[] = {
+    {"the graphics driver hangs as a picture expires", "EXPIRES_MS", "600", 600ms, true, 0, 900ms},
+    {"the same, and the program is killed", "EXPIRES_MS", "600", 600ms, true, SIGKILL, 400ms},
+    {"the graphics driver hangs in a picture", "PICTURES_EVERY_MS", "33", 200ms, false, 0, 650ms},
+    {"the same, and the program is stopped", "PICTURES_EVERY_MS", "33", 200ms, false, SIGSTOP, 650ms},
+};
+
 void watch_hanging_driver(const char* self, const Monitor& monitor, int rounds, const std::string& folder) {
-    constexpr auto kExpires = 600ms;
     const std::string file = folder + "/hang_now";
     setenv("LD_PRELOAD", std::getenv("HANG_IN_SWAP"), 1);
     setenv("HANG_WHEN", file.c_str(), 1);
-    setenv("EXPIRES_MS", std::to_string(kExpires.count()).c_str(), 1);
     const test::ScreenPixel eye(monitor);
-    for (const bool killed : {false, true}) {
-        const Instant longest = killed ? 400ms : 900ms;
+    for (const Hang& hang : kHangs) {
+        setenv(hang.setting, hang.value, 1);
         Instant worst{};
         int never = 0;
         for (int round = 0; round < rounds; ++round) {
@@ -164,57 +175,23 @@ void watch_hanging_driver(const char* self, const Monitor& monitor, int rounds, 
             const Holder holder = start_holder(self, monitor.name);
             const Instant lit = SteadyClock().now();
             if (holder.projector <= 0 || !eye.lit()) expect(false, "there was light before");
-            std::fclose(std::fopen(file.c_str(), "w"));
-            std::this_thread::sleep_for(kExpires - (SteadyClock().now() - lit));
-            if (killed) kill(holder.program, SIGKILL);
+            if (hang.hangs_before) std::fclose(std::fopen(file.c_str(), "w"));
+            std::this_thread::sleep_for(hang.until_fault - (SteadyClock().now() - lit));
+            if (!hang.hangs_before) std::fclose(std::fopen(file.c_str(), "w"));
+            if (hang.signal != 0) kill(holder.program, hang.signal);
             if (const auto dark = eye.until_dark(5s))
                 worst = std::max(worst, *dark);
             else
                 ++never;
             holder.end();
         }
-        expect(
-            never == 0 && worst <= longest,
-            fmt::format("the graphics driver hangs as a picture expires{}: dark after {:.0f} ms (worst of {}), never "
-                        "{} times",
-                        killed ? ", and the program is killed" : "", 1000 * seconds(worst), rounds, never));
+        expect(never == 0 && worst <= hang.longest,
+               fmt::format("{}: dark after {:.0f} ms (worst of {}), never {} times", hang.name, 1000 * seconds(worst),
+                           rounds, never));
+        unsetenv(hang.setting);
     }
     unlink(file.c_str());
-    for (const char* name : {"LD_PRELOAD", "HANG_WHEN", "EXPIRES_MS"}) unsetenv(name);
-}
-
-/// The same while pictures come thirty times a second: the one that hangs, and the one before it, can be taken down by
-/// the end of the process alone.
-void watch_driver_that_hangs_in_a_picture(const char* self, const Monitor& monitor, int rounds,
-                                          const std::string& folder) {
-    const std::string file = folder + "/hang_now";
-    setenv("LD_PRELOAD", std::getenv("HANG_IN_SWAP"), 1);
-    setenv("HANG_WHEN", file.c_str(), 1);
-    setenv("PICTURES_EVERY_MS", "33", 1);
-    const test::ScreenPixel eye(monitor);
-    for (const bool stopped : {false, true}) {
-        Instant worst{};
-        int never = 0;
-        for (int round = 0; round < rounds; ++round) {
-            unlink(file.c_str());
-            const Holder holder = start_holder(self, monitor.name);
-            std::this_thread::sleep_for(200ms);
-            if (holder.projector <= 0 || !eye.lit()) expect(false, "there was light before");
-            std::fclose(std::fopen(file.c_str(), "w"));
-            if (stopped) kill(holder.program, SIGSTOP);
-            if (const auto dark = eye.until_dark(5s))
-                worst = std::max(worst, *dark);
-            else
-                ++never;
-            holder.end();
-        }
-        expect(
-            never == 0 && worst <= 650ms,
-            fmt::format("the graphics driver hangs in a picture{}: dark after {:.0f} ms (worst of {}), never {} times",
-                        stopped ? ", and the program is stopped" : "", 1000 * seconds(worst), rounds, never));
-    }
-    unlink(file.c_str());
-    for (const char* name : {"LD_PRELOAD", "HANG_WHEN", "PICTURES_EVERY_MS"}) unsetenv(name);
+    for (const char* name : {"LD_PRELOAD", "HANG_WHEN"}) unsetenv(name);
 }
 
 void second_master(const Monitor& monitor) {
@@ -245,10 +222,8 @@ int main(int argc, char** argv) {
     if (std::getenv("PLANLIGHT") == nullptr || monitors.size() != 2) return 2;
     const int rounds = std::getenv("ROUNDS") == nullptr ? 3 : std::atoi(std::getenv("ROUNDS"));
     second_master(monitors[1]);
-    if (std::getenv("HANG_IN_SWAP") != nullptr) {
+    if (std::getenv("HANG_IN_SWAP") != nullptr)
         watch_hanging_driver(argv[0], monitors[1], rounds, argc > 1 ? argv[1] : "/tmp");
-        watch_driver_that_hangs_in_a_picture(argv[0], monitors[1], rounds, argc > 1 ? argv[1] : "/tmp");
-    }
     watch(argv[0], monitors[1], rounds);
     return test::failures() == 0 ? 0 : 1;
 }
