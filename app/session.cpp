@@ -209,6 +209,7 @@ void Session::match(const std::vector<PointPair>& landmarks) {
     confirmed_ = false;
     overlay_.reset();
     landmarks_.reset();
+    rig_from_patient_ = RigidTransform::Identity();
     lit_landmark_.reset();
     set_hidden({});
     card_wanted_ = true;
@@ -259,7 +260,7 @@ void Session::start_overlay() {
 
 const std::vector<Eigen::Vector3d>& Session::landmarks() {
     if (landmarks_) return *landmarks_;
-    landmarks_ = landmarks_to_verify(skin_of_light(), rig_, registration_->patient_from_ct);
+    landmarks_ = landmarks_to_verify(skin_of_light(), rig_, rig_from_patient_ * registration_->patient_from_ct);
     Plan plan;
     for (std::size_t i = 0; i < landmarks_->size(); ++i) {
         Borehole ring;
@@ -282,6 +283,7 @@ Session::Update Session::make_update() {
     update.received_at = clock_.now();
     const auto began = std::chrono::steady_clock::now();
     update.pose = tracker_.update(update.frame);
+    if (update.pose.rig_from_patient) rig_from_patient_ = *update.pose.rig_from_patient;
     update.times.track_s = elapsed_s(began);
     if (settings_.while_computing) settings_.while_computing();
     const auto drawing_began = std::chrono::steady_clock::now();

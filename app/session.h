@@ -146,7 +146,8 @@ public:
     /// The match of now, for `resume`; empty without one that may be used. The caller says when it was made.
     std::optional<KeptMatch> kept_match() const;
 
-    /// Places at which a person can judge the light (`landmarks_to_verify`), found anew for each match; ct, mm.
+    /// Places at which a person can judge the light (`landmarks_to_verify`) of the head as it was last seen, found anew
+    /// for each match, and once the plan was lit again after them; ct, mm.
     const std::vector<Eigen::Vector3d>& landmarks();
     /// From the next `update` on this landmark alone is lit, as a ring with a cross; empty: the plan.
     void light_landmark(std::optional<std::size_t> which);
@@ -255,6 +256,7 @@ private:
     int lost_poses_ = 0;                    ///< in a row
     bool exchanged_ = false;                ///< the cameras, when that was last looked at
     std::optional<std::vector<Eigen::Vector3d>> landmarks_;
+    RigidTransform rig_from_patient_ = RigidTransform::Identity();  ///< by the last good pose since the scan
     PlanDrawing landmark_drawing_;
     std::optional<std::size_t> lit_landmark_, item_of_moment_;
     std::set<std::size_t> hidden_;               ///< items of the plan

@@ -58,7 +58,10 @@ void Session::light_landmark(std::optional<std::size_t> which) {
     const auto light = [&] {
         overlay_.reset();
         lit_landmark_ = which && *which < landmarks().size() ? which : std::nullopt;
-        if (lit_landmark_) card_wanted_ = false;
+        if (lit_landmark_)
+            card_wanted_ = false;
+        else
+            landmarks_.reset();  // next time the head may lie elsewhere
     };
     told(SessionCall::light_landmark, light, {}, which ? static_cast<int>(*which) : -1);
 }

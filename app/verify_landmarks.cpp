@@ -16,6 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kReach_mm = 8, kSteepest = 0.9, kRim_px = 30;
+/// Of the ring: to where the cameras measure its light well and an eye sees it as a ring, then as far as it is lit.
+constexpr std::array kSteepestOfRing{1.05, RenderSettings{}.steepest};
 constexpr double kEnoughOfRing = 0.85;  ///< lit: a person sees then where its middle is, and the cameras measure it
 
 /// How much the skin bends outwards round a place: the mean turn of its normal, radians; negative in a hollow.
@@ -37,9 +39,10 @@ bool well_inside(const CameraModel& device, const Vector3d& p_in_rig) {
            pixel->y() < device.height - kRim_px;
 }
 
-/// How much of the ring round a place the projector can light, or the camera that sees least of it can see.
+/// How much of the ring round a place the projector can light, or the camera that sees least of it can see, up to that
+/// angle to the skin's normal.
 double share_of_ring(const SkinSurface& skin, const SkinSurface::Point& at, const RigCalibration& rig,
-                     const RigidTransform& rig_from_ct) {
+                     const RigidTransform& rig_from_ct, double steepest) {
     constexpr int kPlaces = 12;
     const std::array devices{&rig.projector, &rig.left_camera, &rig.right_camera};
     const Vector3d a = at.normal_in_ct.unitOrthogonal(), b = at.normal_in_ct.cross(a);
@@ -52,7 +55,7 @@ double share_of_ring(const SkinSurface& skin, const SkinSurface::Point& at, cons
         place.p_in_ct = there->p_in_ct;
         place.normal_in_ct = there->normal_in_ct;
         for (std::size_t i = 0; i < devices.size(); ++i)
-            reached[i] += freely_seen(place, skin, *devices[i], rig_from_ct, RenderSettings{}.steepest) ? 1 : 0;
+            reached[i] += freely_seen(place, skin, *devices[i], rig_from_ct, steepest) ? 1 : 0;
     }
     return static_cast<double>(*std::ranges::min_element(reached)) / kPlaces;
 }
@@ -101,10 +104,11 @@ std::vector<Vector3d> landmarks_to_verify(const SkinSurface& skin, const RigCali
     }
     std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.bend > b.bend; });
     std::vector<Vector3d> found;
-    take(candidates, apart_mm, found, [&](Candidate& one) {
-        one.of_ring = share_of_ring(skin, one.at, rig, rig_from_ct);
-        return one.of_ring >= kEnoughOfRing;
-    });
+    for (const double steepest : kSteepestOfRing)
+        take(candidates, apart_mm, found, [&](Candidate& one) {
+            one.of_ring = share_of_ring(skin, one.at, rig, rig_from_ct, steepest);
+            return one.of_ring >= kEnoughOfRing;
+        });
     if (found.size() < 2) {  // every place was asked: the best of what there is
         std::stable_sort(candidates.begin(), candidates.end(),
                          [](const auto& a, const auto& b) { return a.of_ring > b.of_ring; });

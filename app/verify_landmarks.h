@@ -13,8 +13,9 @@ inline constexpr double kLandmarkRing_mm = 10;  ///< of light round a landmark, 
 /// Places of the skin at which a person can see by eye whether light lies right: where the skin bends most (the tip of
 /// the nose, the rim of an eye socket, a chin), that the projector lights and both cameras see with the head at
 /// `rig_from_ct`, at least `apart_mm` from each other. Where the skin has such places, at least 85 % of the ring round
-/// each can be lit and seen by each camera (of an ear's rim it is often less), else as much as can. Two, or fewer where
-/// the skin has none; ct, mm.
+/// each can be lit and seen by each camera at 60 degrees or less to the skin's normal: the cameras measure it there,
+/// and an ear's rim, which bends most of all and with every pillow, is no such place. Else at up to 75 degrees, else as
+/// much as can. Two, or fewer where the skin has none; ct, mm.
 std::vector<Eigen::Vector3d> landmarks_to_verify(const SkinSurface& skin, const RigCalibration& rig,
                                                  const RigidTransform& rig_from_ct, double apart_mm = 40);
 

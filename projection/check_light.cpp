@@ -263,7 +263,9 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
         const StrokeSegment& segment = p.sighted(i);
         const int counts = i >= crowded ? 1 : i >= segments ? 2 : segment.tick ? 0 : 1;
         if (!p.dim(segment.item)) check.lit += counts;
-        check.items[static_cast<std::size_t>(segment.item)].lit_segments += counts;
+        ItemLight& item = check.items[static_cast<std::size_t>(segment.item)];
+        item.lit_segments += counts;
+        item.steep_segments += sight.measurable ? 0 : counts;
         if (i >= crowded) continue;
         if (i >= segments) {
             p.look_at(p.patches[i - segments], sight, rig_from_ct, frame, cameras_in_ct, looked);

@@ -55,6 +55,7 @@ struct ItemLight {
     bool dim =
         false;  ///< it is lit dimly beside a bright one (`LightChecker`): that nothing is seen of it tells nothing
     int lit_segments = 0;        ///< stretches of it that the projector lights
+    int steep_segments = 0;      ///< of these, lit at more than `CheckLightSettings::steepest`: nobody asks for them
     int segments = 0, seen = 0;  ///< of these, what should be seen by a camera, and where light was found
     Eigen::Vector3d shift_in_ct = Eigen::Vector3d::Zero();  ///< of the light along the skin, mm
     double off_mm = 0;                                      ///< its length, in the directions that the strokes tell

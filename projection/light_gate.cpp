@@ -67,6 +67,7 @@ LightGate::Item::Look LightGate::Item::all() const {
     Look sum;
     for (const Look& look : looks) {
         sum.lit += look.lit;
+        sum.steep += look.steep;
         sum.asked += look.asked;
         sum.seen += look.seen;
     }
@@ -92,7 +93,7 @@ void LightGate::take(Instant at, const ItemLight& seen, Item& item) const {
         item.good = 0;  // what comes back into the light is measured anew
     std::erase_if(item.looks, [&](const Item::Look& look) { return !within_fresh(look.at, at); });
     if (seen.dim && !seen.told()) return;
-    item.looks.push_back({at, seen.lit_segments, seen.segments, seen.seen, seen.part_off_mm});
+    item.looks.push_back({at, seen.lit_segments, seen.steep_segments, seen.segments, seen.seen, seen.part_off_mm});
     if (seen.segments == 0) return;
     if (seen.seen >= settings_.least_seen_of_item * seen.segments) {
         item.off_mm = seen.off_mm;
@@ -160,7 +161,12 @@ bool LightGate::rule_on_item(const Item& item, Ruling& ruling) const {
     if (all.asked == 0 || all.seen < settings_.least_seen_of_item * all.asked) {
         ruling.found_wrong = false;
         ruling.headline = fmt::format("LOOK: \"{}\" is not measured.", item.name);
-        ruling.details = {"The cameras do not see its light, or not apart from other light: look at it yourself."};
+        ruling.details = {
+            2 * all.steep > all.lit
+                ? "Its light meets the skin too flat to be measured: look yourself, or turn the head."
+            : 2 * all.asked >= all.lit && all.lit > 0
+                ? "Its light is too faint for the cameras, or something is before it: look yourself."
+                : "The cameras do not see its light, or not apart from other light: look at it yourself."};
         return true;
     }
     if (item.off_mm > settings_.warn_mm) {

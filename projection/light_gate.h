@@ -81,8 +81,8 @@ private:
     struct Item {
         struct Look {
             Instant at{};
-            int lit = 0, asked = 0, seen = 0;  ///< stretches
-            double part_off_mm = 0;            ///< `ItemLight::part_off_mm`
+            int lit = 0, steep = 0, asked = 0, seen = 0;  ///< stretches
+            double part_off_mm = 0;                       ///< `ItemLight::part_off_mm`
         };
         std::string name;
         bool dim = false;  ///< `ItemLight::dim`

@@ -38,6 +38,12 @@ int MonitorPicture::height() const {
 
 RgbImage MonitorPicture::look() {
     const Monitor& m = parts_->monitor;
+    // X ends a program that asks for what lies beyond the screen, as a monitor may once it was set anew.
+    XWindowAttributes screen{};
+    if (XGetWindowAttributes(parts_->display, DefaultRootWindow(parts_->display), &screen) == 0 || m.x < 0 || m.y < 0 ||
+        m.x + m.width > screen.width || m.y + m.height > screen.height)
+        throw DeviceError("Monitor " + m.name, "it lies no longer within the screen",
+                          "Set its mode and place again, and start anew.");
     XImage* const image =
         XGetImage(parts_->display, DefaultRootWindow(parts_->display), m.x, m.y, static_cast<unsigned>(m.width),
                   static_cast<unsigned>(m.height), AllPlanes, ZPixmap);

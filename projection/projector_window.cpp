@@ -14,13 +14,17 @@
 #include "projection/glfw_session.h"
 #include "projection/monitor_lock.h"
 #include "projection/monitors_kept_on.h"
+#include "projection/output_turn.h"
 #include "projection/picture_thread.h"
-#include "projection/refuse_input.h"
+#include "projection/projector_hints.h"
+#include "projection/window_above.h"
 
 namespace planlight {
 namespace {
 
 constexpr auto kLandingPatience = std::chrono::milliseconds(1500);
+constexpr auto kTurnLooks = std::chrono::milliseconds(100);     ///< how often the output is asked how it is turned
+constexpr auto kAboveAllowed = std::chrono::milliseconds(150);  ///< for another window to be before ours
 constexpr auto kSettled =
     std::chrono::milliseconds(150);  ///< a window manager may still move a window that just landed
 
@@ -51,8 +55,12 @@ std::string names_of(const std::vector<Monitor>& monitors) {
     return names.empty() ? "none" : names;
 }
 
+std::string rectangle_size(int width, int height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+}
+
 std::string rectangle(int x, int y, int width, int height) {
-    return std::to_string(width) + "x" + std::to_string(height) + " at " + std::to_string(x) + "," + std::to_string(y);
+    return rectangle_size(width, height) + " at " + std::to_string(x) + "," + std::to_string(y);
 }
 
 /// The index of the monitor of that name, or of that index as text.
@@ -92,7 +100,7 @@ GLFWwindow* hidden_window(const Monitor& monitor) {
         throw DeviceError("Projector window", "it could not be opened (" + last_window_error() + ")",
                           "Install an OpenGL 3.3 driver, or set LIBGL_ALWAYS_SOFTWARE=1.");
     glfwSetInputMode(window, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
-    refuse_input(window);
+    set_projector_hints(window);
     return window;
 }
 
@@ -122,16 +130,29 @@ struct ProjectorWindow::Parts {
     GLFWwindow* window = nullptr;
     std::optional<PictureThread> picture;
     bool damaged = false;
+    bool only_monitor_allowed;
+    std::optional<OutputTurn> turn;  ///< at the beginning
+    std::optional<WindowAbove> above;
+    std::chrono::steady_clock::time_point turn_looked_at{};
+    std::optional<std::chrono::steady_clock::time_point> above_since;
 
     Parts(const std::string& wanted, const Clock& c, bool allow_only_monitor, const ProjectorWindowSettings& s)
-        : settings(s), clock(c) {
+        : settings(s), clock(c), only_monitor_allowed(allow_only_monitor) {
         glfwPollEvents();
         const std::vector<GLFWmonitor*> handles = monitors_now();
         const std::size_t index = choose(list_monitors(), wanted, allow_only_monitor);
         handle = handles.at(index);
         monitor = describe(handle);
+        turn = output_turn(handle);
+        if (turn && (turn->scaled || turn->width != monitor.width || turn->height != monitor.height))
+            throw DeviceError("Projector window",
+                              "monitor " + monitor.name + " is scaled: it shows " +
+                                  rectangle_size(turn->width, turn->height) + " of the desktop on " +
+                                  rectangle_size(monitor.width, monitor.height) + " pixels",
+                              "Set it to a scale of 1 (xrandr --output " + monitor.name + " --scale 1x1).");
         lock.emplace(monitor.name);
         window = hidden_window(monitor);
+        above.emplace(window);
         glfwSetWindowUserPointer(window, this);
         glfwSetWindowRefreshCallback(
             window, [](GLFWwindow* w) { static_cast<Parts*>(glfwGetWindowUserPointer(w))->damaged = true; });
@@ -149,6 +170,7 @@ struct ProjectorWindow::Parts {
 
     void close() noexcept {
         picture.reset();
+        above.reset();
         if (window != nullptr) glfwDestroyWindow(window);
         window = nullptr;
     }
@@ -157,6 +179,7 @@ struct ProjectorWindow::Parts {
     void land() {
         glfwSetWindowPos(window, monitor.x, monitor.y);
         glfwShowWindow(window);
+        picture->redraw();  // what was drawn before it was seen is not there
         const auto start = std::chrono::steady_clock::now();
         auto wrong_at = start;
         while (true) {
@@ -181,6 +204,9 @@ struct ProjectorWindow::Parts {
         if (std::find(handles.begin(), handles.end(), handle) == handles.end())
             return "monitor " + monitor.name + " is no longer connected";
         const Monitor now = describe(handle);
+        if (!only_monitor_allowed && (now.primary || handles.size() == 1))
+            return "monitor " + monitor.name + " is now the " + (handles.size() == 1 ? "only" : "primary") +
+                   " one: nobody would see the operator's window";
         if (now.x != monitor.x || now.y != monitor.y || now.width != monitor.width || now.height != monitor.height)
             return "monitor " + monitor.name + " is now " + rectangle(now.x, now.y, now.width, now.height) + ", was " +
                    rectangle(monitor.x, monitor.y, monitor.width, monitor.height);
@@ -218,6 +244,19 @@ struct ProjectorWindow::Parts {
     void check_place() {
         const std::string problem = misplacement();
         if (!problem.empty()) refuse(problem);
+        const auto now = std::chrono::steady_clock::now();
+        if (now - turn_looked_at > kTurnLooks) {
+            turn_looked_at = now;
+            if (output_turn(handle) != turn) refuse("monitor " + monitor.name + " was turned, mirrored or scaled");
+        }
+        if (!above->look()) {
+            above_since.reset();
+        } else if (!above_since) {
+            above_since = now;
+            above->raise();
+        } else if (now - *above_since > kAboveAllowed) {
+            refuse("another window is before the light on monitor " + monitor.name);
+        }
     }
 };
 

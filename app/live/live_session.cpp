@@ -71,6 +71,11 @@ std::string LiveSession::refused_press(OperatorAction action) const {
     return {};
 }
 
+bool LiveSession::is_of_items(OperatorAction action) {
+    return action == OperatorAction::light_item || action == OperatorAction::hide_item ||
+           action == OperatorAction::show_item;
+}
+
 /// Under the lock: where the session stands once the presses that wait are given up.
 SessionState LiveSession::without_waiting() const {
     for (const Press& press : presses_) {
@@ -92,7 +97,8 @@ std::string LiveSession::post(OperatorAction action, AskedBy by, std::optional<s
         const bool dark = action == OperatorAction::dark || action == OperatorAction::stop;
         const SessionState from = dark ? without_waiting() : state_;
         if (dark) {
-            presses_.clear();
+            // What asks for no light stays: an item that was hidden must not be lit afterwards.
+            std::erase_if(presses_, [](const Press& press) { return !is_of_items(press.action); });
             ++darks_;
             light_ = {nullptr, light_.number + 1};
         }
@@ -102,7 +108,7 @@ std::string LiveSession::post(OperatorAction action, AskedBy by, std::optional<s
             enter(next, blank_, model_, scan_there_);
         presses_.push_back({action, darks_, state_, item});
         state_ = next;
-        if (dark) model_.status = dark_status(state_);
+        if (dark) model_.status = dark_status(state_, scan_there_);
         if (action == OperatorAction::confirm) model_.confirm = false;  // until there is something new to look at
     }
     wake_.notify_all();
@@ -152,7 +158,7 @@ OperatorModel LiveSession::model() const {
     OperatorModel now = model_;
     view_.put_into(now);
     if (darks_answered_ == darks_) return now;
-    now.status = dark_status(state_);  // DARK was pressed, and the thread is still at something else
+    now.status = dark_status(state_, scan_there_);  // DARK was pressed, and the thread is still at something else
     now.scene.light = nullptr;
     now.confirm = now.check_skin = false;
     return now;

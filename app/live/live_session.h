@@ -69,6 +69,9 @@ public:
     };
     Light light() const;
 
+    /// False from a press of DARK on until light is asked for anew; also of a picture that is on its way then.
+    bool light_permitted() const;
+
     /// How late the light of this session was so far.
     UpdateLatency latency() const;
 
@@ -107,6 +110,7 @@ private:
     void offer_to_resume();
     void resume(Session& session);
     ResumeCheck look_whether_it_holds(Session& session, const KeptMatch& match);
+    bool look_first() const { return looked_ != looks_asked_; }
     void look_again(Session& session);
     void check_skin(Session& session);
     void give_up_scan();
@@ -129,6 +133,7 @@ private:
     /// pressed meanwhile and has led elsewhere.
     bool happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change = {});
     SessionState without_waiting() const;
+    static bool is_of_items(OperatorAction action);
     bool still_wanted(const Press& press) const;
     void set_progress(const std::string& headline, double share);
     void said();
@@ -138,7 +143,6 @@ private:
     void look(const Session& session, Room& room);
     Press next_press(Instant longest);
     void permit_light(const Press& press);
-    bool light_permitted() const;
     void show_alive();
     template <class Change>
     void change_model(Change change) {
@@ -176,11 +180,12 @@ private:
     std::string cannot_verify_;                 ///< why no landmarks can be looked at, in sentences; empty: they can
     std::string
         landmark_place_;  ///< of the one that is lit, in words: "at the front of the head, on the patient's left"
-    std::deque<Instant> lit_at_;        ///< of the last pictures, on the room's clock
-    int good_updates_ = 0;              ///< ALIGNED so often; then the simulated fault begins
-    std::optional<ResumeOffer> offer_;  ///< of the session's thread
-    std::atomic<bool> look_first_{false};
-    std::optional<KeptMatch> away_;  ///< this session's own, while it is not known whether it still holds
+    std::deque<Instant> lit_at_;            ///< of the last pictures, on the room's clock
+    int good_updates_ = 0;                  ///< ALIGNED so often; then the simulated fault begins
+    std::optional<ResumeOffer> offer_;      ///< of the session's thread
+    std::atomic<unsigned> looks_asked_{0};  ///< before light, by the window's thread
+    unsigned looked_ = 0;                   ///< of these, that were done; by the session's thread
+    std::optional<KeptMatch> away_;         ///< this session's own, while it is not known whether it still holds
     bool ending_ = false, following_ = false;
     std::atomic<bool> projecting_{false};
     std::atomic<Instant::rep> alive_at_{0};

@@ -17,11 +17,6 @@ bool asks_for_light(OperatorAction action) {
            action == OperatorAction::confirm;
 }
 
-bool is_of_items(OperatorAction action) {
-    return action == OperatorAction::light_item || action == OperatorAction::hide_item ||
-           action == OperatorAction::show_item;
-}
-
 }  // namespace
 
 /// Passes everything to the room's projector and keeps the newest picture for the windows.
@@ -180,8 +175,8 @@ bool LiveSession::still_wanted(const Press& press) const {
         case OperatorAction::track:  // and the skin is to be checked right after
             return state_ == SessionState::following || state_ == SessionState::checking_skin;
         case OperatorAction::confirm:
-            return state_ == SessionState::found || state_ == SessionState::verifying ||
-                   state_ == SessionState::looking_again;
+            return (state_ == SessionState::found && press.from == SessionState::unsure) ||
+                   state_ == SessionState::verifying || state_ == SessionState::looking_again;
         case OperatorAction::light_item:
         case OperatorAction::hide_item:
         case OperatorAction::show_item:
@@ -212,7 +207,12 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
             return;
         case OperatorAction::do_register:
         case OperatorAction::use_landmarks:
-            if (scan_holds()) find_patient(session, newest_landmarks());
+            if (scan_holds()) {
+                find_patient(session, newest_landmarks());
+            } else {
+                following_ = projecting_ = false;
+                session.go_dark();
+            }
             return;
         case OperatorAction::check_skin:
             room.let_patient_move(false);  // was asked to lie still
@@ -262,14 +262,14 @@ bool LiveSession::scan_holds() {
 void LiveSession::begin_anew(Session& session, Room& room) {
     offer_.reset();
     away_.reset();
-    look_first_ = false;
+    looked_ = looks_asked_;
     following_ = projecting_ = false;
     room.let_patient_move(false);
     scan(session);
 }
 
 void LiveSession::begin_to_follow(Session& session, Room& room) {
-    if (look_first_) room.let_patient_move(false);  // was asked to lie still
+    if (look_first()) room.let_patient_move(false);  // was asked to lie still
     look_again(session);
     gate_.restart();
     end_verification(session);
@@ -281,10 +281,15 @@ void LiveSession::answer_dark(const Press& press, Session& session) {
     following_ = projecting_ = false;
     session.go_dark();
     if (landmark_ >= 0) end_verification(session);
+    const auto forbidden = gate_.stopped();  // found while DARK waited: what is wrong is still said
     change_model([&](OperatorModel& m) {
         darks_answered_ = press.darks;
         m.scene.light = nullptr;
-        if (!view_of(state_).lights) m.status = dark_status(state_);
+        if (view_of(state_).lights) return;
+        m.status = dark_status(state_, scan_there_);
+        if (!forbidden) return;
+        m.status = {StatusKind::refused, forbidden->headline, forbidden->details};
+        m.next = OperatorAction::scan;
     });
     said();
 }

@@ -110,20 +110,21 @@ void tell_of_recording(PatientRecorded recorded, bool begun, OperatorModel& mode
     if (!begun && model.status.kind == StatusKind::ready) model.status.details.emplace_back(words);
 }
 
-/// Light that nobody watches over goes out: a minimised window shows no banner and hears no key. That it did so is said
-/// until the next press.
-class MinimisedWindow {
+/// Light that nobody watches over goes out: a window that is minimised or on another workspace shows no banner and
+/// hears no key. That it did so is said until the next press.
+class WindowPutAway {
 public:
     /// True where there must be no light now.
     bool look(const OperatorWindow& window, bool light_on) {
-        if (!window.minimised()) return false;
+        if (!window.put_away()) return false;
         went_dark_ = went_dark_ || light_on;
         return true;
     }
     void pressed() { went_dark_ = false; }
     void put_into(OperatorModel& model) const {
         if (went_dark_)
-            model.status.details.insert(model.status.details.begin(), "It went dark as this window was minimised.");
+            model.status.details.insert(model.status.details.begin(),
+                                        "It went dark as this window was minimised or on another workspace.");
     }
 
 private:
@@ -183,14 +184,17 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
     StepPictures pictures(options.screenshots, "operator");
     std::optional<std::chrono::steady_clock::time_point> projecting_since;
     note_end_signals();
-    MinimisedWindow minimised;
+    WindowPutAway put_away;
     bool begun = false;  // by a press
     while (!asked_to_end()) {
         OperatorModel model = session.model();
         say_silence(model, session.projecting(), SteadyClock().now() - session.alive_at(),
                     model.room_kind == RoomKind::real ? kSessionPatience : kSimulatedPatience);
         if (projector) tell_of_projector(*projector, session, watch, autoplay, model);
-        minimised.put_into(model);
+        put_away.put_into(model);
+        if (model.light_on && window.keyboard_is_elsewhere())
+            model.status.details.insert(model.status.details.begin(),
+                                        "Another window has the keyboard: no key or pedal makes it dark. Click here.");
         tell_of_recording(options.recorded, begun, model);
         if (const std::string trouble = options.trouble ? options.trouble() : ""; !trouble.empty())
             model.status.details.push_back(trouble);
@@ -199,7 +203,7 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         const auto frame_began = std::chrono::steady_clock::now();
         const OperatorAction action = window.frame(model);
         const double rest_s = rest_after(std::chrono::steady_clock::now() - frame_began);
-        const bool unseen = minimised.look(window, model.light_on);
+        const bool unseen = put_away.look(window, model.light_on);
         if (unseen && model.light_on) {
             session.post(OperatorAction::dark, AskedBy::program);
             if (projector) projector->go_dark();
@@ -211,7 +215,7 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         }
         if (action == OperatorAction::quit) return 0;
         autoplay.pressed(action);
-        if (action != OperatorAction::none) watch.pressed(), minimised.pressed(), begun = true;
+        if (action != OperatorAction::none) watch.pressed(), put_away.pressed(), begun = true;
         // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays
         // refused.
         if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)
@@ -279,6 +283,7 @@ int run_live_simulated(SessionWindow& screen, MakeRoom make_room, const Case& th
     }
     LiveSession session(std::move(make_room), the_case, drawing, options.keep_matches_in, options.observer,
                         options.resume);
+    if (projector) projector->set_permission([&session] { return session.light_permitted(); });
     std::unique_ptr<LightKeeper> light;  // dark and gone before the session is
     if (projector) light = std::make_unique<LightKeeper>(*projector, session);
     WindowMeter meter;
@@ -298,6 +303,7 @@ int run_live(SessionWindow& screen, const MakeRoomWith& make_room, const Case& t
     }
     LiveSession session([&](const RoomProgress& progress) { return make_room(projector.get(), progress); }, the_case,
                         drawing, options.keep_matches_in, options.observer, options.resume);
+    if (projector) projector->set_permission([&session] { return session.light_permitted(); });
     WindowMeter meter;
     const int code = run_windows(window, session, projector.get(), options,
                                  Autoplay(false, options.resume && options.resume->at_once), meter);

@@ -37,6 +37,8 @@ public:
         tell(GateCall::other_light, at);
     }
     /// Told only where it does.
+    /// What `forbids` would say, for nobody to record: nothing is to be lit.
+    std::optional<LightGate::Ruling> stopped() const { return gate_.forbids(); }
     std::optional<LightGate::Ruling> forbids(Instant at) const {
         auto ruling = gate_.forbids();
         if (ruling && observer_) observer_->gate(GateCall::forbids, at, 0, &*ruling);

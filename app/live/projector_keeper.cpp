@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 #include <signal.h>
 
+#include <optional>
+#include <utility>
+
 #include "planning_io/types/error.h"
+#include "projection/dark_cover.h"
 
 namespace planlight {
 namespace {
@@ -42,6 +46,10 @@ Instant ProjectorKeeper::show(const RgbImage& picture, Instant valid_until) {
                           "End what else uses the computer.");
     }
     try {
+        if (permitted_ && !permitted_()) {
+            projector_->go_dark();
+            return clock_.now();
+        }
         projector_->renew();  // a picture that comes before the lease, or right after darkness, would be lost
         return projector_->show(picture, valid_until);
     } catch (const Error& error) {
@@ -49,6 +57,11 @@ Instant ProjectorKeeper::show(const RgbImage& picture, Instant valid_until) {
         lose(problem_of(error));
         throw;
     }
+}
+
+void ProjectorKeeper::set_permission(std::function<bool()> permitted) {
+    const std::lock_guard lock(mutex_);
+    permitted_ = std::move(permitted);
 }
 
 void ProjectorKeeper::go_dark() noexcept {
@@ -105,6 +118,9 @@ void ProjectorKeeper::lose(const ProjectorProblem& problem) {
 }
 
 void ProjectorKeeper::run(const std::stop_token& stop) {
+    constexpr Instant kFollow = std::chrono::milliseconds(250);
+    DarkCover cover(monitor_);
+    std::optional<Instant> covered_at;
     while (!stop.stop_requested()) {
         try {
             std::unique_lock lock(mutex_);
@@ -115,7 +131,9 @@ void ProjectorKeeper::run(const std::stop_token& stop) {
                 if (alive()) projector_->renew();
             }
             lock.unlock();
-            if (lost && clock_.now() - lost_at > settings_.retry_after) start_again();
+            if (lost && (!covered_at || clock_.now() - *covered_at > kFollow)) cover.cover(), covered_at = clock_.now();
+            if (lost && clock_.now() - lost_at > settings_.retry_after) start_again();  // beneath the cover
+            if (!lost && covered_at) cover.uncover(), covered_at.reset();
         } catch (const Error& error) {
             lose(problem_of(error));
         } catch (const std::exception& error) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -29,8 +30,8 @@ struct ProjectorProblem {
 
 /// The projector of a session: its process is watched, its lease is kept only while the operator window and the session
 /// both show signs of life (where either hangs, it is dark), and it is started again when it was lost (unplugged,
-/// moved, its process ended): dark then, until the next picture. On the same output then, also where it was asked for
-/// by its number.
+/// moved, its process ended): dark then, until the next picture, and its monitor covered (`DarkCover`), lest the
+/// desktop's own picture lies on the patient. On the same output then, also where it was asked for by its number.
 ///
 /// May be used from any thread.
 class ProjectorKeeper final : public Projector {
@@ -42,10 +43,15 @@ public:
     int width() const override { return width_; }
     int height() const override { return height_; }
     /// Throws DeviceError while the projector is lost, or when it is found to be; and, dark, while the operator window
-    /// does not answer, for the lease has run out then and nothing would be lit. Whoever shows is alive.
+    /// does not answer, for the lease has run out then and nothing would be lit, and where the light is not permitted.
+    /// Whoever shows is alive.
     Instant show(const RgbImage& picture, Instant valid_until) override;
     void go_dark() noexcept override;
 
+    /// Asked right before a picture goes to the projector, in one piece with that: a picture that was on its way as
+    /// DARK was pressed is not lit after it. Must not call back into the keeper. To be set before the first `show`;
+    /// empty: all light is permitted.
+    void set_permission(std::function<bool()> permitted);
     void window_lives();             ///< the operator window has drawn a frame
     void session_lives(Instant at);  ///< its last sign of life
     ProjectorProblem problem() const;
@@ -68,6 +74,7 @@ private:
     std::unique_ptr<ProjectorProcess> projector_;
     std::string monitor_;  ///< its name
     ProjectorProblem problem_;
+    std::function<bool()> permitted_;
     Instant lost_at_{};
     std::atomic<unsigned> starts_{1};
     int width_ = 0, height_ = 0;

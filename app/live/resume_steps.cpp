@@ -76,13 +76,14 @@ void LiveSession::resume(Session& session) {
 }
 
 void LiveSession::look_before_light() {
-    look_first_ = true;
+    ++looks_asked_;
 }
 
 /// After the projector was away: it, or the patient, may have been moved meanwhile. What was not found so stays to be
 /// looked at by the next press of Track.
 void LiveSession::look_again(Session& session) {
-    if (!look_first_) return;
+    const unsigned asked = looks_asked_;  // one that is asked for meanwhile is another
+    if (looked_ == asked) return;
     if (auto match = session.kept_match()) {
         match->made_utc = today();
         away_ = kept_match_of(text_of(*match), {});  // as its recording has it, so that a replay goes on with the same
@@ -96,7 +97,7 @@ void LiveSession::look_again(Session& session) {
     look_whether_it_holds(session, *away_);
     gate_.new_match();  // a person looked at the light of the projector as it was then
     change_model([&](OperatorModel& m) { show_lit_items(session, m); });
-    look_first_ = false;
+    looked_ = asked;
     away_.reset();
 }
 

@@ -183,8 +183,13 @@ void show_no_light(OperatorModel& model) {
     for (PlanRow& row : model.rows) row.light_off_mm.reset();
 }
 
-Status dark_status(SessionState state) {
-    return {StatusKind::dark, "Dark: no light on the patient.", {view_of(state).what_next}, {}};
+Status dark_status(SessionState state, bool scan_there) {
+    const SessionView& view = view_of(state);
+    const bool wants_scan = view.no_register == nullptr && !scan_there && !view.has_match;
+    return {StatusKind::dark,
+            "Dark: no light on the patient.",
+            {wants_scan ? "Press Scan to begin again." : view.what_next},
+            {}};
 }
 
 void enter(SessionState state, const OperatorModel& blank, OperatorModel& model, bool scan_there) {

@@ -79,7 +79,7 @@ void enter(SessionState state, const OperatorModel& blank, OperatorModel& model,
 /// Nothing is left of what was lit: no figure of it, and no yes to it.
 void show_no_light(OperatorModel& model);
 
-/// What is said after DARK in that state.
-Status dark_status(SessionState state);
+/// What is said after DARK in that state; where its scan was given up, to scan.
+Status dark_status(SessionState state, bool scan_there = true);
 
 }  // namespace planlight

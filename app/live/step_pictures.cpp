@@ -35,8 +35,12 @@ std::string StepPictures::take(OperatorWindow& window, const OperatorModel& mode
     if (folder_.empty()) return {};
     const std::string asked = model.confirm ? " " + model.confirm_words : "";
     const std::string state = in_file_name(status_word(model.status.kind) + asked);
-    looks_ = state == state_ ? looks_ + 1 : 0;
-    state_ = state;
+    // What is said too, less its figures, which change from look to look.
+    std::string said = model.status.headline;
+    for (const std::string& detail : model.status.details) said += detail;
+    std::erase_if(said, [](unsigned char c) { return std::isdigit(c) != 0; });
+    looks_ = state + said == state_ ? looks_ + 1 : 0;
+    state_ = state + said;
     if (looks_ != kSettled) return {};
     std::string name = fmt::format("{:02d}-{}.png", ++number_, state);
     return keep_or_warn(window.screenshot(), folder_ / (begin_ + "-" + name)) ? name : std::string{};

@@ -10,8 +10,9 @@ namespace planlight {
 
 class OperatorWindow;
 
-/// Screenshots of the operator window, for their owner alone: one whenever the status changes its kind or something
-/// else is asked, once the window has settled. Called BEGIN-NUMBER-STATE.png: operator-09-check-light-1-is-right.png.
+/// Screenshots of the operator window, for their owner alone: one whenever the status says another thing or something
+/// else is asked, once the window has settled. Called BEGIN-NUMBER-STATE.png:
+/// operator-09-check-light-1-is-right.png.
 class StepPictures {
 public:
     /// `folder` is made; empty: nothing is taken.

@@ -12,6 +12,7 @@
 
 #include "app/windows/layout.h"
 #include "app/windows/status_word.h"
+#include "app/windows/window_workspace.h"
 #include "planning_io/types/error.h"
 #include "projection/glfw_session.h"
 #include "projection/monitors_kept_on.h"
@@ -262,8 +263,12 @@ bool GuiWindow::asked_to_close() const {
     return glfwWindowShouldClose(parts_->window) == GLFW_TRUE;
 }
 
-bool GuiWindow::minimised() const {
-    return glfwGetWindowAttrib(parts_->window, GLFW_ICONIFIED) == GLFW_TRUE;
+bool GuiWindow::put_away() const {
+    return glfwGetWindowAttrib(parts_->window, GLFW_ICONIFIED) == GLFW_TRUE || on_other_workspace(parts_->window);
+}
+
+bool GuiWindow::keyboard_is_elsewhere() const {
+    return planlight::keyboard_is_elsewhere(parts_->window);
 }
 
 void GuiWindow::keep_open() {

@@ -45,8 +45,9 @@ public:
 
     void make_current();
     bool asked_to_close() const;
-    bool minimised() const;  ///< as the window system tells it: nobody sees the window
-    void keep_open();        ///< forgets that it was asked to close
+    bool put_away() const;  ///< minimised, or on another workspace, as the window system tells it: nobody sees it
+    bool keyboard_is_elsewhere() const;  ///< no key reaches the window
+    void keep_open();                    ///< forgets that it was asked to close
     const FontFiles& font_files() const;
 
 private:

@@ -252,17 +252,18 @@ OperatorAction MiddleView::draw_corner_buttons(const Pen& pen, Box corner, const
         corner.y -= corner.height + 12 * pen.scale;
     }
     OperatorAction wanted = OperatorAction::none;
-    if (part_of_plan(model)) {
-        places_["all-items"] = corner;
-        if (button(pen, corner, "Show the whole plan", {true, {}}, {false, false, key_text(KeyMeaning::all_items)}))
-            wanted = press_item(KeyMeaning::all_items, model);
-        corner.y -= corner.height + 12 * pen.scale;
-    }
     if (model.check_skin) {
         places_["check-skin"] = corner;
         if (button(pen, corner, "Check skin", {true, {}}, {false, false, key_text(KeyMeaning::check_skin)}))
             wanted = OperatorAction::check_skin;
         corner.y -= corner.height + 12 * pen.scale;
+    }
+    if (part_of_plan(model)) {  // above all others, which keep their places: the second of two clicks falls on none
+        Box above = corner;
+        above.y -= above.height + 12 * pen.scale;
+        places_["all-items"] = above;
+        if (button(pen, above, "Show the whole plan", {true, {}}, {false, false, key_text(KeyMeaning::all_items)}))
+            wanted = press_item(KeyMeaning::all_items, model);
     }
     if (!model.confirm) return wanted;
     places_["confirm"] = corner;

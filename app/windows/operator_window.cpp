@@ -1,4 +1,5 @@
 #include "app/windows/operator_window.h"
+#include "app/windows/changed_meaning.h"
 
 #include <imgui.h>
 
@@ -41,6 +42,7 @@ constexpr WayButton kWay[] = {
 
 struct OperatorWindow::Parts {
     PageInput<KeyMeaning> input;
+    ChangedMeaning changed_meaning;
     WindowLayout place;
     GuiWindow gui;
     std::unique_ptr<MiddleView> middle;
@@ -193,9 +195,14 @@ struct OperatorWindow::Parts {
     /// What the key that was pressed last means now.
     OperatorAction take_key(const OperatorModel& model) {
         KeyMeaning pressed = input.take();
+        changed_meaning.look(model, steady_clock::now());
         if (asks_to_close) {
             if (pressed == KeyMeaning::stay || pressed == KeyMeaning::next) asks_to_close = false;
             return pressed == KeyMeaning::close_window ? OperatorAction::quit : OperatorAction::none;
+        }
+        if (pressed == KeyMeaning::next && changed_meaning.just_changed(steady_clock::now())) {
+            say("What leads on has just changed: look, and press again.");
+            return OperatorAction::none;
         }
         if (pressed == KeyMeaning::next) {
             if (model.next == OperatorAction::confirm) pressed = KeyMeaning::confirm;
@@ -289,8 +296,12 @@ void OperatorWindow::rest(double longest_s) {
         parts_->gui.take_input(longest_s);
 }
 
-bool OperatorWindow::minimised() const {
-    return parts_->gui.minimised();
+bool OperatorWindow::keyboard_is_elsewhere() const {
+    return parts_->gui.keyboard_is_elsewhere();
+}
+
+bool OperatorWindow::put_away() const {
+    return parts_->gui.put_away();
 }
 
 std::size_t OperatorWindow::frames_drawn() const {

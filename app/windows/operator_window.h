@@ -36,7 +36,9 @@ public:
     /// after every frame.
     void rest(double longest_s);
     /// Nobody sees it, and none of its keys is heard.
-    bool minimised() const;
+    bool put_away() const;
+    /// Another window has the keyboard: neither a key nor a pedal reaches DARK.
+    bool keyboard_is_elsewhere() const;
     /// How often the window was drawn so far.
     std::size_t frames_drawn() const;
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "planning_io/case/recording_json.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/files/make_folder.h"
@@ -30,6 +32,18 @@ void write_frames(const std::vector<StereoFrame>& frames, const fs::path& folder
     });
 }
 
+namespace {
+
+/// As `check_depth`, of all pictures of one camera.
+void check_depth_of(const std::vector<StereoFrame>& frames, GrayImage StereoFrame::*camera, const fs::path& folder,
+                    const JsonValue& list) {
+    const auto bright = [&](const StereoFrame& frame) { return brighter_than_low_bits(frame.*camera); };
+    if (frames.empty() || std::ranges::any_of(frames, bright)) return;
+    check_depth({frames.front().*camera}, folder / list[0].at("picture").text());
+}
+
+}  // namespace
+
 std::vector<StereoFrame> read_frames(const fs::path& folder) {
     const fs::path file = folder / "frames.json";
     const Json json = parse_file(file, "planlight frames");
@@ -52,6 +66,8 @@ std::vector<StereoFrame> read_frames(const fs::path& folder) {
         check_same_size(frame.left, frames.front().left, folder / "left" / name);
         check_same_size(frame.right, frames.front().right, folder / "right" / name);
     }
+    check_depth_of(frames, &StereoFrame::left, folder / "left", list);
+    check_depth_of(frames, &StereoFrame::right, folder / "right", list);
     return frames;
 }
 

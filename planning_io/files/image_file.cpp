@@ -121,11 +121,13 @@ RgbImage read_rgb(const fs::path& file) {
     return rgb;
 }
 
-void check_depth(const std::vector<GrayImage>& pictures, const fs::path& file) {
+bool brighter_than_low_bits(const GrayImage& picture) {
     constexpr std::uint8_t kTwelveBits = 4095 / 257 + 1;
-    for (const GrayImage& picture : pictures)
-        for (const std::uint8_t value : picture.pixels)
-            if (value > kTwelveBits) return;
+    return std::ranges::any_of(picture.pixels, [](std::uint8_t value) { return value > kTwelveBits; });
+}
+
+void check_depth(const std::vector<GrayImage>& pictures, const fs::path& file) {
+    if (std::ranges::any_of(pictures, brighter_than_low_bits)) return;
     const std::string bytes = read_whole(file);
     const cv::Mat picture =
         cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data())),

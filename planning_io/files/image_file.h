@@ -23,6 +23,9 @@ GrayImage read_gray(const std::filesystem::path& file);
 /// Grey pictures become three equal channels. Throws InputError or DamagedFileError.
 RgbImage read_rgb(const std::filesystem::path& file);
 
+/// Brighter somewhere than a picture can be whose 12 bits stand at the lower end of 16.
+bool brighter_than_low_bits(const GrayImage& picture);
+
 /// A camera of 10 or 12 bits whose program stored them at the lower end of 16 leaves pictures that read as nearly
 /// black. Throws InputError when `file`, one of a camera's pictures, has 16 bits and none of them all reaches 4096 of
 /// 65535.

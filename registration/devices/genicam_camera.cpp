@@ -248,8 +248,10 @@ bool GenicamCamera::receive() {
     last_by_device_ = by_device;
     std::size_t size = 0;
     const auto* data = static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer, &size));
+    gint line_padding = 0, end_padding = 0;
+    arv_buffer_get_image_padding(buffer, &line_padding, &end_padding);
     auto picture = mono_picture({data, size}, arv_buffer_get_image_width(buffer), arv_buffer_get_image_height(buffer),
-                                arv_buffer_get_image_pixel_format(buffer));
+                                arv_buffer_get_image_pixel_format(buffer), line_padding);
     if (!picture) {
         frames_.fail({fmt::format("it sends pictures of format {:#x}, which are not grey ones",
                                   arv_buffer_get_image_pixel_format(buffer)),

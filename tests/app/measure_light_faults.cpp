@@ -5,8 +5,9 @@
 //
 // Faults: offset (the picture 0.5 mm aside), late (20 ms, the head moving), slip (1 mm of one marker), projector and
 // camera (turned by 0.05 degrees about an axis square to its sight), covered (no light), window (another picture),
-// cap (all markers 2 mm along the skin), good
-// (none, for 20 s; what the gate would have ruled then is counted: how many updates were not ALIGNED). Each begins
+// cap (all markers 2 mm along the skin), landmark (none, but a landmark is lit as for Verify, for 2 s), good
+// (none, for 20 s). What the gate would have ruled of the last two is counted: how many updates were not ALIGNED, and
+// for which item, of how many stretches lit, asked and seen in the last look at it. Each begins
 // after a second of good light, is looked at until 0.8 s after it was noticed, 2.5 s at most, and taken away again.
 // Every fourth draw is with the head moving at up to 20 mm/s, all of them where the light is late or --moving is asked
 // for. Times are the room's; from a frame to its picture it computes for 10 ms, or as long as told.
@@ -77,8 +78,22 @@ struct Outcome {
     std::string named = "nothing", said;
     bool dark = false;
     int updates = 0, not_green = 0;  ///< by a gate that was verified, from the second second on
-    std::string not_green_for;       ///< the last headline of these
+    std::string not_green_for;       ///< the last headline of these, and what was seen of the items then
 };
+
+bool no_fault(const std::string& draw) {
+    return draw == "good" || draw == "landmark";
+}
+
+/// Of each item of which not all is seen that is lit.
+std::string seen_of(const LightCheck& check) {
+    std::string words;
+    for (const ItemLight& item : check.items)
+        if (item.seen < item.lit_segments)
+            words += fmt::format("; {}: of {} lit {} asked, {} seen", item.name, item.lit_segments, item.segments,
+                                 item.seen);
+    return words;
+}
 
 const char* name_of(LightFault fault) {
     switch (fault) {
@@ -128,6 +143,7 @@ public:
         const auto undo = begin(fault, right);
         const Instant began = rig_.clock().now();
         Outcome outcome;
+        std::string seen;
         const Instant found_before = session_.found_delay();
         LightGate gate;
         gate.verify(began);
@@ -135,16 +151,18 @@ public:
             const auto update = session_.update();
             const auto ruling = gate.step(update.frame.at, update.overlay.lit, update.light, update.causes,
                                           update.pose.external_reliability_mm);
+            if (update.light) seen = seen_of(*update.light);
             if (update.frame.at - began > 1s) {
                 ++outcome.updates;
-                if (ruling.trust != LightTrust::aligned) ++outcome.not_green, outcome.not_green_for = ruling.headline;
+                if (ruling.trust != LightTrust::aligned)
+                    ++outcome.not_green, outcome.not_green_for = ruling.headline + seen;
             }
             const bool corrected = session_.found_delay() != found_before && outcome.named == "nothing";
             outcome.dark = outcome.dark || !update.overlay.lit;
             if (update.causes.empty() && !corrected && update.overlay.lit) continue;
             const double after_s = seconds(update.frame.at - began);
             if (!outcome.noticed_s) outcome.noticed_s = after_s;
-            if (after_s > *outcome.noticed_s + 0.8 && fault != "good") break;
+            if (after_s > *outcome.noticed_s + 0.8 && !no_fault(fault)) break;
             if (!update.causes.empty()) {
                 outcome.named = name_of(update.causes.front().fault);
                 outcome.said = update.causes.front().sentence();
@@ -233,6 +251,10 @@ private:
             return [this] { spoilt_.instead.reset(); };
         }
         right = "nothing";
+        if (fault == "landmark" && !session_.landmarks().empty()) {
+            session_.light_landmark(landmark_++ % session_.landmarks().size());
+            return [this] { session_.light_landmark({}); };
+        }
         return [] {};
     }
     /// From the skin's own shape round the place.
@@ -249,6 +271,7 @@ private:
     Spoilt spoilt_;
     Session session_;
     bool moving_ = false;
+    std::size_t landmark_ = 0;  ///< lit next
 };
 
 struct Sums {
@@ -280,7 +303,7 @@ int main(int argc, char** argv) {
               draws = words.size() > 3 ? std::stoi(words[3]) : 2;
     if (!test::example_patient()) return 77;
     std::vector<std::string> faults{"offset",  "late",   "slip", "projector", "camera",
-                                    "covered", "window", "cap",  "good"};
+                                    "covered", "window", "cap",  "landmark",  "good"};
     if (words.size() > 4) {
         faults.clear();
         std::istringstream named(words[4]);
@@ -310,8 +333,8 @@ int main(int argc, char** argv) {
                 sum.dark += outcome->dark;
                 sum.updates += outcome->updates;
                 sum.not_green += outcome->not_green;
-                if (fault == "good" && outcome->not_green > 0)
-                    fmt::print("room {} good {}: {} of {} updates not ALIGNED, the last for: {}\n", first + k,
+                if (no_fault(fault) && outcome->not_green > 0)
+                    fmt::print("room {} {} {}: {} of {} updates not ALIGNED, the last for: {}\n", first + k, fault,
                                moving ? "moving" : "rest", outcome->not_green, outcome->updates,
                                outcome->not_green_for);
                 ++sum.named[outcome->named];
@@ -339,7 +362,7 @@ int main(int argc, char** argv) {
         fmt::print("{} | {}{} | {} | {:.2f} / {:.2f} / {:.2f} | {} | {} | {}\n", fault, s.draws,
                    s.not_good_before > 0 ? fmt::format(" (and {} not begun)", s.not_good_before) : "", s.noticed,
                    after.median, after.p95, after.worst, s.right, s.dark, said);
-        if (fault == "good") fmt::print("good: {} of {} updates were not ALIGNED\n", s.not_green, s.updates);
+        if (no_fault(fault)) fmt::print("{}: {} of {} updates were not ALIGNED\n", fault, s.not_green, s.updates);
     }
     return 0;
 }

@@ -112,5 +112,24 @@ TEST(LightGate, AnItemOfWhichTheCamerasSeeLittleIsMeasuredInPartOnly) {
     EXPECT_EQ(most.details.back(), "They see about 70 % of the light.");
 }
 
+// Whoever reads it is to know whether to turn the head, to look for a hand, or neither.
+TEST(LightGate, AnItemThatIsNotMeasuredSaysWhyAsFarAsItIsKnown) {
+    const auto why = [](int lit, int steep, int asked) {
+        LightGate gate;
+        Instant now{};
+        gate.verify(now);
+        LightCheck check = seen_at(0.1);
+        check.items = {item("Hole 1", 8, 8, 0.1), item("Hole 2", 0, asked, 0)};
+        check.items[1].lit_segments = lit, check.items[1].steep_segments = steep;
+        const auto ruling = after(gate, now, 10, check);
+        EXPECT_EQ(ruling.headline, "LOOK: \"Hole 2\" is not measured.");
+        return ruling.details.empty() ? "" : ruling.details.front();
+    };
+    EXPECT_NE(why(7, 5, 2).find("too flat to be measured"), std::string::npos);
+    EXPECT_NE(why(7, 0, 7).find("too faint for the cameras"), std::string::npos);
+    for (const auto& neither : {why(7, 0, 0), why(8, 3, 2), why(0, 0, 0)})
+        EXPECT_NE(neither.find("not apart from other light"), std::string::npos) << neither;
+}
+
 }  // namespace
 }  // namespace planlight

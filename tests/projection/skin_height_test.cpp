@@ -167,6 +167,8 @@ TEST(SkinHeight, AnItemThatIsLitButTooSteepToBeMeasuredIsNoGreen) {
         check_light(drawing, test::ball(), rig, RigidTransform::Identity(), test::pictures_of(drawing, rig, {}));
     EXPECT_TRUE(check.items[3].lit);
     EXPECT_LT(2 * check.items[3].segments, check.items[3].lit_segments) << "steeper than what is measured";
+    EXPECT_GT(2 * check.items[3].steep_segments, check.items[3].lit_segments);
+    EXPECT_EQ(check.items[0].steep_segments, 0);
     const LightGate::Ruling ruling = ruling_of(check);
     EXPECT_EQ(ruling.trust, LightTrust::look);
     EXPECT_NE(ruling.headline.find("Steep"), std::string::npos) << ruling.headline;

@@ -137,6 +137,21 @@ TEST_F(LiveSessionTest, AHiddenItemIsNeitherLitNorMissedAndAllHiddenIsDarkAndSay
     for (const PlanRow& row : again.rows) EXPECT_FALSE(row.hidden);
 }
 
+// It was taken, and asks for no light: DARK gives up what does, and nothing else.
+TEST_F(LiveSessionTest, AnItemThatWasHiddenRightBeforeDarkIsNotLitAfterwards) {
+    followed();
+    hold();
+    EXPECT_EQ(session->post_item(OperatorAction::hide_item, 0), "");
+    session->post(OperatorAction::dark);
+    held = false;
+    wait_for(*session, "Track", [](const OperatorModel& m) { return m.track.enabled && m.rows[0].hidden; });
+    session->post(OperatorAction::track);
+    const OperatorModel lit = wait_for(
+        *session, "light", [&](const OperatorModel& m) { return m.rows[1].light_off_mm && bright_pixels() > 0; });
+    EXPECT_TRUE(lit.rows[0].hidden);
+    EXPECT_FALSE(lit.rows[0].light_off_mm);
+}
+
 /// The simulated room with stickers that all slip along the skin by 2.5 mm when they are told to: as far as they can so
 /// that they still agree with each other, and farther than light may lie beside the plan.
 class SlippingRoom final : public Room {

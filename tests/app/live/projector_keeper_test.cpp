@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <fstream>
 #include <string>
@@ -161,6 +162,24 @@ TEST_F(ProjectorKeeperTest, WhoShowsIsAlive) {
     ProjectorKeeper projector("DUMMY1", settings_);
     EXPECT_NO_THROW(projector.show(RgbImage(8, 6, {255, 255, 255}), in_a_minute()));
     EXPECT_EQ(noted("lit").size(), 1U);
+}
+
+// It had passed every check of its session before DARK was pressed, and was only then handed over.
+TEST_F(ProjectorKeeperTest, APictureThatWasOnItsWayAtDarkIsNotLitAfterIt) {
+    settings_.process.lease = 1h;
+    ProjectorKeeper projector("DUMMY1", settings_);
+    std::atomic<bool> permitted{true};
+    projector.set_permission([&] { return permitted.load(); });
+    projector.show(RgbImage(8, 6, {255, 255, 255}), in_a_minute());
+    ASSERT_EQ(noted("lit").size(), 1U);
+    permitted = false;
+    projector.go_dark();
+    EXPECT_NO_THROW(projector.show(RgbImage(8, 6, {255, 255, 255}), in_a_minute()));
+    EXPECT_EQ(noted("lit").size(), 1U);
+    EXPECT_EQ(noted("dark").size(), 2U);
+    permitted = true;
+    projector.show(RgbImage(8, 6, {255, 255, 255}), in_a_minute());
+    EXPECT_EQ(noted("lit").size(), 2U);
 }
 
 TEST_F(ProjectorKeeperTest, AProjectorThatIsLostIsADeviceThatIsLost) {

@@ -1,6 +1,7 @@
 #!/bin/bash
-# minimise_on_two_monitors.sh FOLDER: a session whose window is minimised while its light is on the second monitor, on the
-# display that two_monitors.sh made, with a window manager: the light goes out, and stays out until the window is back.
+# minimise_on_two_monitors.sh FOLDER: a session whose window is minimised, then on another workspace than the one that is
+# shown, while its light is on the second monitor, on the display that two_monitors.sh made, with a window manager: the
+# light goes out, and stays out until the window is back and somebody presses Track.
 # $PLANLIGHT is the program, $PLAN the plan. Leaves screenshots in FOLDER.
 folder=$1 patient=/usr/share/doc/invesalius-examples/examples/Cranium.inv3
 [ -e $patient ] || { echo "skipped: the package invesalius-examples is not installed"; exit 77; }
@@ -19,17 +20,27 @@ rm -rf "$folder/case" "$folder"/*.png
 trap 'kill $session 2>/dev/null' EXIT
 until_lit; check "light on the second monitor" $((1 - $?)) "$(cat "$folder/errors")"
 window=$(xdotool search --name "^Planlight$" | tail -1)
+expect_dark() { # WHILE
+  sleep 1.5
+  local dark=1
+  for i in $(seq 8); do bright && dark=0; sleep 0.3; done
+  check "dark while the window is $1" $dark "there is light"
+}
+expect_light_by_track() { # NAME
+  sleep 1
+  import -window root "$folder/$1.png"
+  bright; check "and dark when it is back, until somebody presses Track" $?
+  xdotool windowfocus "$window" key t
+  until_lit; check "light again by that press" $((1 - $?)) "$(cat "$folder/errors")"
+}
 xdotool windowminimize "$window"
-sleep 1.5
-dark=1
-for i in $(seq 8); do bright && dark=0; sleep 0.3; done
-check "dark while the window is minimised" $dark "there is light"
+expect_dark minimised
 xdotool windowmap "$window"
-sleep 1
-import -window root "$folder/back.png"
-bright; check "and dark when it is back, until somebody presses Track" $?
-xdotool windowfocus "$window" key t
-until_lit; check "light again by that press" $((1 - $?)) "$(cat "$folder/errors")"
+expect_light_by_track back
+xdotool set_desktop 1
+expect_dark "on another workspace"
+xdotool set_desktop 0
+expect_light_by_track back-from-workspace
 kill -INT $session; wait $session; code=$?
 trap - EXIT
 check "the session ends as asked" $((code == 0)) "exit code $code: $(cat "$folder/errors")"

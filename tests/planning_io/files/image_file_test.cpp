@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
+#include "planning_io/case/frames_folder.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
@@ -33,6 +34,24 @@ TEST(ImageFile, TwelveBitsAtTheLowerEndOfSixteenAreRefused) {
     EXPECT_EQ(pictures(16).back().at(3, 3), 255);
     write_png(GrayImage(30, 20), dark);
     EXPECT_NO_THROW(check_depth({read_gray(dark)}, dark)) << "8 bits, dark: for others to judge";
+}
+
+// Markers are not found in such frames, and lamps and exposure would be blamed.
+TEST(ImageFile, FramesOfTwelveBitsAtTheLowerEndAreRefusedAsWell) {
+    const test::TemporaryFolder folder;
+    const fs::path frames = folder.path() / "frames";
+    write_frames({{GrayImage(30, 20, 9), GrayImage(30, 20, 9), Instant(1000), Instant(50), 1},
+                  {GrayImage(30, 20, 9), GrayImage(30, 20, 9), Instant(2000), Instant(50), 2}},
+                 frames);
+    EXPECT_EQ(read_frames(frames).size(), 2U) << "8 bits, dark: for others to judge";
+    const auto store = [&](int value) {
+        for (const char* picture : {"000000.png", "000001.png"})
+            cv::imwrite((frames / "right" / picture).string(), cv::Mat(20, 30, CV_16UC1, cv::Scalar(value)));
+    };
+    store(4000);
+    EXPECT_THROW(read_frames(frames), InputError);
+    store(64000);
+    EXPECT_EQ(read_frames(frames).back().right.at(3, 3), 64000 / 257);
 }
 
 TEST(ImageFile, PicturesReadBackAndCutOnesAreRefused) {

@@ -26,6 +26,16 @@ TEST(MonoPixels, EveryFormatHasTheSameUpperBits) {
         EXPECT_EQ(picture->at(1, 0), 0xAB) << std::hex << format;
         EXPECT_EQ(picture->at(2, 0), 0xF0) << std::hex << format;
         EXPECT_FALSE(mono_picture(bytes, 300, 1, format)) << "too few bytes";
+        std::vector<std::uint8_t> two_lines = bytes;
+        two_lines.insert(two_lines.end(), 3, 0xEE);
+        two_lines.insert(two_lines.end(), bytes.begin(), bytes.end());
+        const auto padded = mono_picture(two_lines, 3, 2, format, 3);
+        ASSERT_TRUE(padded) << std::hex << format;
+        for (const int y : {0, 1}) {
+            EXPECT_EQ(padded->at(0, y), 0x12) << std::hex << format;
+            EXPECT_EQ(padded->at(2, y), 0xF0) << std::hex << format;
+        }
+        EXPECT_FALSE(mono_picture(two_lines, 3, 3, format, 3)) << "too few lines";
     }
     EXPECT_FALSE(mono_picture(formats[0].second, 1, 1, 0x02180014)) << "RGB8";
     for (const auto& [format, bytes] : formats)

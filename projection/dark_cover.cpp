@@ -1,0 +1,88 @@
+#include "projection/dark_cover.h"
+
+#include <X11/Xlib.h>
+#include <X11/extensions/Xrandr.h>
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace planlight {
+namespace {
+
+bool overlap(const XRRMonitorInfo& a, const XRRMonitorInfo& b) {
+    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+/// The monitor of that name; empty where it must not be covered.
+std::optional<XRRMonitorInfo> find(Display* display, const std::string& name) {
+    int count = 0;
+    XRRMonitorInfo* const all = XRRGetMonitors(display, DefaultRootWindow(display), True, &count);
+    if (all == nullptr) return std::nullopt;
+    const Atom wanted = XInternAtom(display, name.c_str(), True);
+    const std::span<const XRRMonitorInfo> monitors(all, static_cast<std::size_t>(std::max(count, 0)));
+    const auto found = std::ranges::find_if(monitors, [&](const XRRMonitorInfo& m) { return m.name == wanted; });
+    std::optional<XRRMonitorInfo> result;
+    if (found != monitors.end() && monitors.size() > 1 && found->primary == 0 &&
+        std::ranges::count_if(monitors, [&](const XRRMonitorInfo& m) { return overlap(m, *found); }) == 1)
+        result = *found;
+    XRRFreeMonitors(all);
+    return result;
+}
+
+}  // namespace
+
+struct DarkCover::Parts {
+    std::string monitor;
+    Display* display = nullptr;
+    ::Window window = 0;
+
+    ~Parts() {
+        if (display != nullptr) XCloseDisplay(display);  // and the window with it
+    }
+
+    void make() {
+        XSetWindowAttributes wanted{};
+        wanted.override_redirect = True;
+        wanted.background_pixel = BlackPixel(display, DefaultScreen(display));
+        window = XCreateWindow(display, DefaultRootWindow(display), 0, 0, 1, 1, 0, CopyFromParent, InputOutput, nullptr,
+                               CWOverrideRedirect | CWBackPixel, &wanted);
+        XStoreName(display, window, "Planlight dark");
+        const char nothing[1] = {0};
+        const Pixmap empty = XCreateBitmapFromData(display, window, nothing, 1, 1);
+        XColor black{};
+        const Cursor no_cursor = XCreatePixmapCursor(display, empty, empty, &black, &black, 0, 0);
+        XDefineCursor(display, window, no_cursor);
+        XFreeCursor(display, no_cursor);
+        XFreePixmap(display, empty);
+    }
+};
+
+DarkCover::DarkCover(std::string monitor) : parts_(std::make_unique<Parts>()) {
+    parts_->monitor = std::move(monitor);
+}
+DarkCover::~DarkCover() = default;
+
+void DarkCover::cover() noexcept {
+    if (parts_->display == nullptr) parts_->display = XOpenDisplay(nullptr);
+    if (parts_->display == nullptr) return;
+    const auto monitor = find(parts_->display, parts_->monitor);
+    if (!monitor) {
+        uncover();
+        return;
+    }
+    if (parts_->window == 0) parts_->make();
+    XMoveResizeWindow(parts_->display, parts_->window, monitor->x, monitor->y, static_cast<unsigned>(monitor->width),
+                      static_cast<unsigned>(monitor->height));
+    XMapRaised(parts_->display, parts_->window);
+    XSync(parts_->display, False);
+}
+
+void DarkCover::uncover() noexcept {
+    if (parts_->window == 0) return;
+    XUnmapWindow(parts_->display, parts_->window);
+    XSync(parts_->display, False);
+}
+
+}  // namespace planlight

@@ -1,0 +1,184 @@
+// A projector that is lost on an ordinary desktop, which is not black: its picture must not lie on the patient instead.
+// Run by two_monitors.sh: `keep_projector FOLDER`, with PLANLIGHT the program (for its projector process). The desktop
+// is made white; then the projector process is killed, another window lies before the light, the monitor is turned, and
+// the operator's monitor is taken away. Exit code 0 when nothing white was seen for longer than 200 ms.
+#include <X11/Xlib.h>
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+
+#include "app/live/projector_keeper.h"
+#include "planning_io/types/error.h"
+#include "planning_io/types/steady_clock.h"
+#include "projection/projector_window.h"
+#include "root_window.h"
+#include "screen_pixel.h"
+
+namespace {
+
+using namespace planlight;
+using namespace std::chrono_literals;
+using test::expect;
+
+constexpr unsigned kWhite = 0xFFFFFF, kGreen = 0x00FF00;
+
+bool run(const char* command) {
+    return std::system(command) == 0;
+}
+
+/// What of the desktop, or of another window, was seen in a while.
+struct Seen {
+    Instant longest_white{};
+    unsigned last = 0;
+};
+
+Seen watch(const test::ScreenPixel& eye, Instant duration) {
+    const SteadyClock clock;
+    Seen seen;
+    const Instant until = clock.now() + duration;
+    Instant white_since = Instant::max();
+    for (Instant now = clock.now(); now < until; now = clock.now()) {
+        seen.last = eye.colour();
+        white_since = seen.last == kWhite ? std::min(white_since, now) : Instant::max();
+        if (seen.last == kWhite) seen.longest_white = std::max(seen.longest_white, clock.now() - white_since);
+        std::this_thread::sleep_for(1ms);
+    }
+    return seen;
+}
+
+/// Above all others, as a notification is.
+class OtherWindow {
+public:
+    explicit OtherWindow(const Monitor& monitor, bool stubborn = false) : display_(XOpenDisplay(nullptr)) {
+        XSetWindowAttributes wanted{};
+        wanted.override_redirect = True;
+        wanted.background_pixel = WhitePixel(display_, DefaultScreen(display_));
+        const ::Window window =
+            XCreateWindow(display_, DefaultRootWindow(display_), monitor.x + monitor.width / 2 - 100,
+                          monitor.y + monitor.height / 2 - 50, 200, 100, 0, CopyFromParent, InputOutput, nullptr,
+                          CWOverrideRedirect | CWBackPixel, &wanted);
+        XMapRaised(display_, window);
+        XSync(display_, False);
+        if (!stubborn) return;
+        // Above whatever of the projector's comes, but not for ever: what covers it is to stay.
+        stays_ = std::jthread([this, window](const std::stop_token& stop) {
+            for (int i = 0; i < 100 && !stop.stop_requested(); ++i, std::this_thread::sleep_for(5ms)) {
+                XRaiseWindow(display_, window);
+                XSync(display_, False);
+            }
+        });
+    }
+    ~OtherWindow() {
+        if (stays_.joinable()) stays_.request_stop(), stays_.join();
+        XCloseDisplay(display_);
+    }
+    OtherWindow(const OtherWindow&) = delete;
+    OtherWindow& operator=(const OtherWindow&) = delete;
+
+private:
+    Display* display_;
+    std::jthread stays_;
+};
+
+class Kept {
+public:
+    Kept() {
+        ProjectorKeeperSettings settings;
+        settings.process.program = std::getenv("PLANLIGHT");
+        keeper_ = std::make_unique<ProjectorKeeper>("DUMMY1", settings);
+        beats_ = std::jthread([this](const std::stop_token& stop) {
+            for (; !stop.stop_requested(); std::this_thread::sleep_for(20ms)) {
+                keeper_->window_lives();
+                keeper_->session_lives(clock_.now());
+            }
+        });
+    }
+    ProjectorKeeper& keeper() { return *keeper_; }
+    /// As soon as it is there; false when that takes too long.
+    bool light() {
+        for (const Instant until = clock_.now() + 10s; clock_.now() < until; std::this_thread::sleep_for(20ms)) try {
+                keeper_->show(RgbImage(keeper_->width(), keeper_->height(), {0, 255, 0}), clock_.now() + 60s);
+                return true;
+            } catch (const DeviceError&) {
+            }
+        return false;
+    }
+    std::string problem_within(Instant patience) {
+        for (const Instant until = clock_.now() + patience; clock_.now() < until; std::this_thread::sleep_for(1ms))
+            if (const std::string what = keeper_->problem().what; !what.empty()) return what;
+        return {};
+    }
+
+private:
+    SteadyClock clock_;
+    std::unique_ptr<ProjectorKeeper> keeper_;
+    std::jthread beats_;
+};
+
+void expect_hidden(const Seen& seen, const std::string& what) {
+    expect(seen.longest_white <= 200ms,
+           fmt::format("{}: white was seen for {:.0f} ms at the longest", what, 1e3 * seconds(seen.longest_white)));
+}
+
+void lose_it(const Monitor& operators, const Monitor& projectors) {
+    const test::ScreenPixel eye(projectors);
+    expect(eye.colour() == kWhite, "the desktop is white on the projector's monitor");
+    Kept kept;
+    expect(eye.colour() == 0, "black, as soon as it is open");
+    expect(kept.light() && eye.colour() == kGreen, "and lit");
+
+    kept.keeper().disturb(SIGKILL);
+    const Seen killed = watch(eye, 4s);
+    expect_hidden(killed, "its process is killed");
+    expect(killed.last == 0 && kept.keeper().starts() == 2, "dark, and started again");
+    expect(kept.light() && eye.colour() == kGreen, "lit again, with nothing before it");
+
+    {
+        const OtherWindow other(projectors);
+        const Seen seen = watch(eye, 2s);
+        expect_hidden(seen, "another window comes before it");
+    }
+    expect(kept.light() && eye.colour() == kGreen, "lit, or lit again");
+    {
+        const OtherWindow other(projectors, true);
+        const std::string problem = kept.problem_within(2s);
+        expect(problem.find("another window") != std::string::npos, "one that stays there is noticed: " + problem);
+        watch(eye, 600ms);  // it gives up
+        expect(eye.colour() != kWhite, "and covered");
+    }
+    expect(kept.light() && eye.colour() == kGreen, "lit again once that is gone");
+
+    const std::string turn = "xrandr --output " + projectors.name + " --scale 2x2 2>/dev/null";
+    if (run(turn.c_str())) {
+        const std::string problem = kept.problem_within(1s);
+        expect(!problem.empty(), "a monitor that was scaled is noticed: " + problem);
+        expect(run(("xrandr --output " + projectors.name + " --scale 1x1").c_str()) && kept.light(), "and back");
+    } else {
+        fmt::print("     (this X server turns and scales no monitor)\n");
+    }
+
+    const std::string off =
+        fmt::format("xrandr --fb {}x1080 --output {} --off --output {} --pos {}x{}", projectors.x + projectors.width,
+                    operators.name, projectors.name, projectors.x, projectors.y);
+    expect(run(off.c_str()), "(the operator's monitor is taken away)");
+    const std::string alone = kept.problem_within(2s);
+    expect(!alone.empty(), "light that nobody watches over goes out: " + alone);
+}
+
+}  // namespace
+
+int main() {
+    if (!run("command -v xsetroot >/dev/null") || !run("xsetroot -solid white")) {
+        fmt::print("skipped: xsetroot is not installed\n");
+        return 77;
+    }
+    try {
+        const auto monitors = list_monitors();
+        lose_it(monitors.at(0), monitors.at(1));
+    } catch (const Error& error) {
+        expect(false, std::string("thrown: ") + error.what() + "; " + error.remedy);
+    }
+    return test::failures() == 0 ? 0 : 1;
+}
