@@ -59,4 +59,14 @@ RgbImage MonitorPicture::look() {
     return picture;
 }
 
+bool desktop_is_composited() {
+    Display* const display = XOpenDisplay(nullptr);
+    if (display == nullptr) return false;
+    const std::string owner = "_NET_WM_CM_S" + std::to_string(DefaultScreen(display));
+    const Atom selection = XInternAtom(display, owner.c_str(), True);
+    const bool composited = selection != None && XGetSelectionOwner(display, selection) != None;
+    XCloseDisplay(display);
+    return composited;
+}
+
 }  // namespace planlight

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -14,12 +15,20 @@
 #include "planning_io/case/rig_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/statistics.h"
+#include "projection/monitor_picture.h"
 #include "registration/calibration/check_drift.h"
 #include "registration/projector_measurement/measure_latency.h"
 #include "registration/projector_measurement/record_light.h"
 
 namespace planlight {
 namespace {
+
+double lit_share(const RgbImage& picture) {
+    constexpr int kBlack = 12;
+    const auto lit = std::ranges::count_if(picture.pixels,
+                                           [](const Rgb& pixel) { return *std::ranges::max_element(pixel) > kBlack; });
+    return static_cast<double>(lit) / static_cast<double>(std::max<std::size_t>(1, picture.pixels.size()));
+}
 
 CameraFigures figures_of(Camera& camera, const std::string& side, const RoomCamera& room, const CameraCounts& before,
                          double watched_s) {
@@ -144,6 +153,10 @@ private:
         ask_window_system([&] { monitors = list_monitors(); });  // throws without a display: then nothing is judged
         for (const Monitor& monitor : monitors)
             if (monitor.name == room_.monitor) figures.found = monitor;
+        if (figures.found) {
+            figures.desktop_lit = lit_share(MonitorPicture(room_.monitor).look());
+            figures.composited = desktop_is_composited();
+        }
         monitor_ = figures;
         if (!room_.projector_file.empty()) monitor_->measured = read_projector_file(room_.projector_file);
     }

@@ -234,6 +234,23 @@ DoctorLine judge_identity(const Monitor& m, const ProjectorFacts& measured) {
                 nameless ? "it tells no name (EDID)" : fmt::format("{} {}", m.model, m.serial), {});
 }
 
+/// What Planlight's window covers while it is there, and who draws it.
+DoctorLine judge_desktop(const MonitorFigures& monitor) {
+    constexpr double kSome = 0.001;
+    if (monitor.desktop_lit.value_or(0) > kSome)
+        return line("projector, desktop", Health::look,
+                    fmt::format("the desktop lights {:.0f} % of the projector's monitor: it falls on the patient when "
+                                "Planlight has ended",
+                                std::max(1.0, 100 * *monitor.desktop_lit)),
+                    "Make its background black there, and keep icons, panels and notifications off it.");
+    if (monitor.composited)
+        return line("projector, desktop", Health::look,
+                    "a compositor draws the desktop, and may move, delay or cover the light",
+                    "Log in to a desktop without one (openbox), or switch it off.");
+    return line("projector, desktop", Health::good,
+                monitor.desktop_lit ? "black, and nothing draws over it" : "nothing draws over it", {});
+}
+
 }  // namespace
 
 std::vector<DoctorLine> judge_monitor(const MonitorFigures& monitor, const CameraModel& projector) {
@@ -242,7 +259,8 @@ std::vector<DoctorLine> judge_monitor(const MonitorFigures& monitor, const Camer
                      "Connect the projector and switch it on; `planlight devices` lists what is there.")};
     return {judge_mode(*monitor.found, projector, monitor.measured), judge_identity(*monitor.found, monitor.measured),
             line("projector, window", monitor.covered ? Health::good : Health::stop,
-                 monitor.covered ? "covers its monitor exactly" : monitor.problem, monitor.remedy)};
+                 monitor.covered ? "covers its monitor exactly" : monitor.problem, monitor.remedy),
+            judge_desktop(monitor)};
 }
 
 std::vector<DoctorLine> judge_delay(const DelayFigures& delay) {

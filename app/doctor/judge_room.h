@@ -93,6 +93,9 @@ struct MonitorFigures {
     ProjectorFacts measured;       ///< projector.json; empty fields were not measured
     bool covered = false;          ///< a window of exactly its size stands on it and stays there
     std::string problem, remedy;   ///< why not
+    /// How much of the monitor the desktop lights by itself, before any window of ours; empty: not known.
+    std::optional<double> desktop_lit;
+    bool composited = false;  ///< a compositor draws the desktop's windows
 };
 
 std::vector<DoctorLine> judge_monitor(const MonitorFigures& monitor, const CameraModel& calibrated_projector);

@@ -4,6 +4,7 @@
 #include "tests/app/on_example_patient.h"
 #include "tests/planning_io/synthetic_files.h"
 #include "tests/planning_io/synthetic_series.h"
+#include "tests/support/sanitizer.h"
 
 namespace planlight::test {
 namespace {
@@ -86,6 +87,7 @@ std::string little_memory(int kib) {
 }
 
 TEST_F(CommandsTest, WhereMemoryIsShortTheNeedIsSaid) {
+    if (test::kUnderASanitizer) GTEST_SKIP() << "no limit means anything";
     const auto run = run_planlight("prepare " + patient() + " --plan " + plan() + " --voxel-mm 0.25 --out never",
                                    root(), little_memory(900000));
     EXPECT_TRUE(run.exit_code == 3 || run.exit_code == 7) << run.exit_code << run.err;
@@ -94,6 +96,7 @@ TEST_F(CommandsTest, WhereMemoryIsShortTheNeedIsSaid) {
 }
 
 TEST_F(CommandsTest, WhereMemoryIsTooShortToDrawTheCaseIsMadeWithoutViewsAndSaysSo) {
+    if (test::kUnderASanitizer) GTEST_SKIP() << "no limit means anything";
     // The renderer without a card would end the whole program, where it is given no memory.
     const auto run = run_planlight("prepare " + patient() + " --plan " + plan() + " --voxel-mm 4 --out viewless",
                                    root(), little_memory(1000000));
@@ -112,10 +115,16 @@ TEST_F(CommandsTest, AThresholdThatNothingIsMadeOfIsRefused) {
     EXPECT_FALSE(fs::exists(root() / "never"));
 }
 
-TEST_F(CommandsTest, TheExamplePlanRaisesNoWarningOnItsPatient) {
-    for (const auto& warning : json::parse(prepared().out)["warnings"])
+// Of the example's plan one thing is to be said: what its curve is between its points, which the file does not tell.
+TEST_F(CommandsTest, TheExamplePlanRaisesNoWarningOnItsPatientButThatOfItsCurve) {
+    const json report = json::parse(prepared().out);
+    ASSERT_FALSE(report["warnings"].empty());
+    for (const auto& said : report["warnings"]) {
+        const std::string warning = said.get<std::string>();
+        if (warning.find("\"Osteotomy\" runs straight between its 13 points") == 0) continue;
         for (const char* item : {"Osteotomy", "B1", "B2", "B3", "B4", "T1"})
-            EXPECT_EQ(warning.get<std::string>().find(item), std::string::npos) << warning;
+            EXPECT_EQ(warning.find(item), std::string::npos) << warning;
+    }
 }
 
 TEST_F(CommandsTest, PlanListsChecksAndConverts) {

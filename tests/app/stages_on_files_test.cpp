@@ -66,7 +66,9 @@ TEST_F(CommandsTest, StagesOnFilesFindThePatientWithinAMillimetreOfTheTruth) {
 
     const Eigen::Matrix4d truth = true_rig_from_ct();
     const Eigen::Matrix4d measured = matrix_of(json::parse(found.out)["patient_from_ct"]);
-    for (const auto& markup : read_json(plan())["markups"])
+    const json planned = read_json(plan());
+    ASSERT_FALSE(planned["markups"].empty());
+    for (const auto& markup : planned["markups"])
         for (const auto& point : markup["controlPoints"]) {
             const auto p = point["position"].get<std::array<double, 3>>();
             const Eigen::Vector4d h(p[0], p[1], p[2], 1);

@@ -194,6 +194,18 @@ std::vector<DoctorLine> judged(const MonitorFigures& monitor) {
     return lines;
 }
 
+// It is there before Planlight, after it, and for a moment when a projector process is lost.
+TEST(Doctor, ADesktopThatIsNotBlackOrIsDrawnByACompositorIsSaid) {
+    MonitorFigures monitor = good_monitor();
+    monitor.desktop_lit = 0;
+    EXPECT_EQ(about("desktop", judged(monitor)).health, Health::good);
+    monitor.composited = true;
+    EXPECT_EQ(about("desktop", judged(monitor)).health, Health::look);
+    monitor.desktop_lit = 0.01;
+    EXPECT_EQ(about("desktop", judged(monitor)).health, Health::look);
+    EXPECT_NE(about("desktop", judged(monitor)).said.find("falls on the patient"), std::string::npos);
+}
+
 TEST(Doctor, TheProjectorIsTheOneThatWasCalibratedAndMeasured) {
     EXPECT_EQ(worst_of(judged(good_monitor())), Health::good);
     MonitorFigures monitor = good_monitor();

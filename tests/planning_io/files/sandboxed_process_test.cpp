@@ -11,6 +11,7 @@
 #include "planning_io/files/sandboxed_process.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/volume_in_child.h"
+#include "tests/support/sanitizer.h"
 
 namespace planlight {
 namespace {
@@ -25,12 +26,6 @@ std::string refusal_of(const std::function<Volume()>& parse) {
     }
     return "";
 }
-
-#ifdef __SANITIZE_ADDRESS__
-constexpr bool kUnderASanitizer = true;
-#else
-constexpr bool kUnderASanitizer = false;
-#endif
 
 double children_processor_s() {
     rusage usage{};
@@ -59,7 +54,7 @@ TEST(LimitedChild, AVolumeComesThroughWhole) {
 }
 
 TEST(LimitedChild, ACrashAHangAndAGreedyParserCostTheChildOnly) {
-    if (kUnderASanitizer) GTEST_SKIP() << "it handles crashes itself, and takes address space without end";
+    if (test::kUnderASanitizer) GTEST_SKIP() << "no limit means anything";
     EXPECT_TRUE(says(refusal_of<DamagedFileError>([]() -> Volume { std::abort(); }), "crash (signal 6)"));
     EXPECT_TRUE(says(refusal_of<DamagedFileError>([]() -> Volume {
                          raise(SIGSEGV);
@@ -115,7 +110,7 @@ TEST(LimitedChild, AnErrorKeepsItsExitCode) {
 
 /// Less memory than any file may take is the machine's lack, more than that the file's size.
 TEST(LimitedChild, WhereMemoryIsShortTheFileIsNotAtFault) {
-    if (kUnderASanitizer) GTEST_SKIP() << "it handles crashes itself, and takes address space without end";
+    if (test::kUnderASanitizer) GTEST_SKIP() << "no limit means anything";
     const auto read_with_little = [] {
         unsigned long pages = 0;
         if (std::FILE* status = std::fopen("/proc/self/statm", "r"); status && std::fscanf(status, "%lu", &pages) == 1)
