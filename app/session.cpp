@@ -333,6 +333,9 @@ void Session::name_lost_pose(Update& update) {
 void Session::name_hidden_plan(Update& update) const {
     if (!update.overlay.lit && !lit_landmark_ && all_hidden())
         update.overlay.reason = "every item of the plan is hidden";
+    if (!update.overlay.lit && lit_landmark_ && update.overlay.reason == kNothingInTheLight)
+        update.overlay.reason =
+            "the landmark is not in the projector's light: turn the head back, or press Stop, then Track";
 }
 
 void Session::note_shown(const OverlayStep& overlay) {

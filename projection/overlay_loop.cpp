@@ -134,7 +134,7 @@ OverlayStep OverlayLoop::Parts::draw(const TrackedPose& pose) {
     OverlayStep step;
     step.rig_from_ct = *rig_from_patient * registration.patient_from_ct;  // T_global = T_cur T_ini
     step.counts = renderer.render_into(step.picture, drawing, step.rig_from_ct, *rig_from_patient, settings.render);
-    if (step.counts.lit == 0) return dark("nothing of the plan lies in the projector's light");
+    if (step.counts.lit == 0) return dark(kNothingInTheLight);
     const Instant shown = clock.now();
     if (auto reason = pose_refusal(pose, shown, settings); !reason.empty())
         return dark(std::move(reason));  // rendering took too long

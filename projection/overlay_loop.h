@@ -32,6 +32,9 @@ struct OverlaySettings {
     RenderSettings render;
 };
 
+/// `OverlayStep::reason` where the head lies so that the projector reaches no part of what is to be lit.
+inline constexpr const char* kNothingInTheLight = "nothing of the plan lies in the projector's light";
+
 /// What the overlay did with one pose.
 struct OverlayStep {
     bool lit = false;

@@ -70,7 +70,8 @@ bool follows(const OperatorModel& model) {
 /// And the light of that moment beside it.
 void take_pictures(StepPictures& pictures, OperatorWindow& window, const OperatorModel& model,
                    const LiveSession& session) {
-    if (follows(model) && !model.figures.delay_to_light_ms) return;  // the light is still being made
+    const bool dark = model.status.kind == StatusKind::dark;
+    if (follows(model) && !model.figures.delay_to_light_ms && !dark) return;  // the light is still being made
     const std::string taken = pictures.take(window, model);
     const auto light = taken.empty() ? nullptr : session.light().picture;
     if (light) keep_or_warn(*light, pictures.folder() / ("light-" + taken));  // the name card
