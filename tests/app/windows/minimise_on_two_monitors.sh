@@ -5,7 +5,7 @@
 # $PLANLIGHT is the program, $PLAN the plan. Leaves screenshots in FOLDER.
 folder=$1 patient=/usr/share/doc/invesalius-examples/examples/Cranium.inv3
 [ -e $patient ] || { echo "skipped: the package invesalius-examples is not installed"; exit 77; }
-command -v xdotool >/dev/null || { echo "skipped: xdotool is not installed"; exit 77; }
+for needed in xdotool xprop; do command -v $needed >/dev/null || { echo "skipped: $needed is not installed"; exit 77; }; done
 failed=0
 check() { if [ "$2" = 1 ]; then echo "ok   $1"; else echo "FAIL $1 ($3)"; failed=1; fi; }
 photograph() { import -window root -crop 800x600+1920+0 +repage "$folder/$1.png"; }
@@ -41,6 +41,11 @@ xdotool set_desktop 1
 expect_dark "on another workspace"
 xdotool set_desktop 0
 expect_light_by_track back-from-workspace
+# A compositing desktop keeps the windows of its other workspaces as they were: only its word tells.
+xprop -root -f _NET_CURRENT_DESKTOP 32c -set _NET_CURRENT_DESKTOP 1
+expect_dark "on another workspace, and still mapped"
+xprop -root -f _NET_CURRENT_DESKTOP 32c -set _NET_CURRENT_DESKTOP 0
+expect_light_by_track back-by-its-word
 kill -INT $session; wait $session; code=$?
 trap - EXIT
 check "the session ends as asked" $((code == 0)) "exit code $code: $(cat "$folder/errors")"
