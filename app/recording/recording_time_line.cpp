@@ -46,7 +46,7 @@ public:
         const Json room = Json::parse(chunk.payload, nullptr, false);
         if (room.is_object()) line_.room_entered_utc = room.value("utc", "");
     }
-    double since_room_s(Instant at) const { return origin_ ? seconds(at - *origin_) : 0; }
+    double since_room_s(Instant at) const { return origin_ ? seconds(at) - seconds(*origin_) : 0; }
 
     void take_frame(Instant at, std::uint64_t place) {
         if (!frames_.empty() && frames_.back().second.frame == place) return;

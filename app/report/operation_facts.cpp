@@ -31,13 +31,18 @@ std::optional<double> number(const Json& value) {
     return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
 }
 
+/// Moments come from a file: of two that lie too far from each other the difference is none in whole nanoseconds.
+double seconds_from(Instant origin, Instant to) {
+    return seconds(to) - seconds(origin);
+}
+
 /// Goes through the events in their order.
 class Teller {
 public:
     Teller(OperationFacts& facts, const fs::path& recording) : facts_(facts), matches_(recording) {}
 
     void take(const RecordingChunk& chunk) {
-        at_s_ = facts_.room_entered ? seconds(chunk.at - origin_) : 0;
+        at_s_ = facts_.room_entered ? seconds_from(origin_, chunk.at) : 0;
         if (chunk.type == chunk_types::kRoom)
             enter_room(Json::parse(chunk.payload), chunk.at);
         else if (chunk.type == chunk_types::kEvent)
@@ -219,7 +224,7 @@ private:
     void take_update(const Json& event) {
         ++facts_.updates;
         frame_at_ = Instant(event.at("at_ns").get<std::int64_t>());
-        const double at_s = seconds(frame_at_ - origin_);
+        const double at_s = seconds_from(origin_, frame_at_);
         step_s_ = following_ ? std::clamp(at_s - update_at_s_, 0.0, kLongestStep_s) : 0;
         following_ = true;
         update_at_s_ = at_s;
