@@ -149,7 +149,7 @@ struct ProjectorWindow::Parts {
                               "monitor " + monitor.name + " is scaled: it shows " +
                                   rectangle_size(turn->width, turn->height) + " of the desktop on " +
                                   rectangle_size(monitor.width, monitor.height) + " pixels",
-                              "Set it to a scale of 1 (xrandr --output " + monitor.name + " --scale 1x1).");
+                              "Set its scale to 1, in the desktop's settings of monitors or with xrandr.");
         lock.emplace(monitor.name);
         window = hidden_window(monitor);
         above.emplace(window);
