@@ -1,12 +1,13 @@
 #include "projection/dark_cover.h"
 
-#include <X11/Xlib.h>
 #include <X11/extensions/Xrandr.h>
 
 #include <algorithm>
 #include <optional>
 #include <span>
 #include <utility>
+
+#include "projection/x11_pointers.h"
 
 namespace planlight {
 namespace {
@@ -18,31 +19,27 @@ bool overlap(const XRRMonitorInfo& a, const XRRMonitorInfo& b) {
 /// The monitor of that name; empty where it must not be covered.
 std::optional<XRRMonitorInfo> find(Display* display, const std::string& name) {
     int count = 0;
-    XRRMonitorInfo* const all = XRRGetMonitors(display, DefaultRootWindow(display), True, &count);
-    if (all == nullptr) return std::nullopt;
+    const X11Pointer<XRRMonitorInfo, XRRFreeMonitors> all(
+        XRRGetMonitors(display, DefaultRootWindow(display), True, &count));
+    if (!all) return std::nullopt;
     const Atom wanted = XInternAtom(display, name.c_str(), True);
-    const std::span<const XRRMonitorInfo> monitors(all, static_cast<std::size_t>(std::max(count, 0)));
+    const std::span<const XRRMonitorInfo> monitors(all.get(), static_cast<std::size_t>(std::max(count, 0)));
     const auto found = std::ranges::find_if(monitors, [&](const XRRMonitorInfo& m) { return m.name == wanted; });
-    std::optional<XRRMonitorInfo> result;
     if (found != monitors.end() && monitors.size() > 1 && found->primary == 0 &&
         std::ranges::count_if(monitors, [&](const XRRMonitorInfo& m) { return overlap(m, *found); }) == 1)
-        result = *found;
-    XRRFreeMonitors(all);
-    return result;
+        return *found;
+    return std::nullopt;
 }
 
 }  // namespace
 
 struct DarkCover::Parts {
     std::string monitor;
-    Display* display = nullptr;
-    ::Window window = 0;
-
-    ~Parts() {
-        if (display != nullptr) XCloseDisplay(display);  // and the window with it
-    }
+    X11Display connection;
+    ::Window window = 0;  ///< goes with its connection
 
     void make() {
+        Display* const display = connection.get();
         XSetWindowAttributes wanted{};
         wanted.override_redirect = True;
         wanted.background_pixel = BlackPixel(display, DefaultScreen(display));
@@ -65,24 +62,25 @@ DarkCover::DarkCover(std::string monitor) : parts_(std::make_unique<Parts>()) {
 DarkCover::~DarkCover() = default;
 
 void DarkCover::cover() noexcept {
-    if (parts_->display == nullptr) parts_->display = XOpenDisplay(nullptr);
-    if (parts_->display == nullptr) return;
-    const auto monitor = find(parts_->display, parts_->monitor);
+    if (!parts_->connection) parts_->connection.reset(XOpenDisplay(nullptr));
+    Display* const display = parts_->connection.get();
+    if (display == nullptr) return;
+    const auto monitor = find(display, parts_->monitor);
     if (!monitor) {
         uncover();
         return;
     }
     if (parts_->window == 0) parts_->make();
-    XMoveResizeWindow(parts_->display, parts_->window, monitor->x, monitor->y, static_cast<unsigned>(monitor->width),
+    XMoveResizeWindow(display, parts_->window, monitor->x, monitor->y, static_cast<unsigned>(monitor->width),
                       static_cast<unsigned>(monitor->height));
-    XMapRaised(parts_->display, parts_->window);
-    XSync(parts_->display, False);
+    XMapRaised(display, parts_->window);
+    XSync(display, False);
 }
 
 void DarkCover::uncover() noexcept {
     if (parts_->window == 0) return;
-    XUnmapWindow(parts_->display, parts_->window);
-    XSync(parts_->display, False);
+    XUnmapWindow(parts_->connection.get(), parts_->window);
+    XSync(parts_->connection.get(), False);
 }
 
 }  // namespace planlight

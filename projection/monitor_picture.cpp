@@ -4,17 +4,15 @@
 #include "projection/projector_window.h"
 
 // Last: its macros are everywhere.
-#include <X11/Xlib.h>
 #include <X11/Xutil.h>
+
+#include "projection/x11_pointers.h"
 
 namespace planlight {
 
 struct MonitorPicture::Parts {
     Monitor monitor;
-    Display* display = nullptr;
-    ~Parts() {
-        if (display) XCloseDisplay(display);
-    }
+    X11Display display;
 };
 
 MonitorPicture::MonitorPicture(const std::string& name) : parts_(std::make_unique<Parts>()) {
@@ -22,7 +20,7 @@ MonitorPicture::MonitorPicture(const std::string& name) : parts_(std::make_uniqu
         if (monitor.name == name) parts_->monitor = monitor;
     if (parts_->monitor.name.empty())
         throw DeviceError("Monitor " + name, "there is none of this name", "See `planlight devices`.");
-    parts_->display = XOpenDisplay(nullptr);
+    parts_->display.reset(XOpenDisplay(nullptr));
     if (!parts_->display)
         throw DeviceError("Monitor " + name, "there is no X display", "Start it in a graphical session.");
 }
@@ -38,15 +36,15 @@ int MonitorPicture::height() const {
 
 RgbImage MonitorPicture::look() {
     const Monitor& m = parts_->monitor;
+    Display* const display = parts_->display.get();
     // X ends a program that asks for what lies beyond the screen, as a monitor may once it was set anew.
     XWindowAttributes screen{};
-    if (XGetWindowAttributes(parts_->display, DefaultRootWindow(parts_->display), &screen) == 0 || m.x < 0 || m.y < 0 ||
+    if (XGetWindowAttributes(display, DefaultRootWindow(display), &screen) == 0 || m.x < 0 || m.y < 0 ||
         m.x + m.width > screen.width || m.y + m.height > screen.height)
         throw DeviceError("Monitor " + m.name, "it lies no longer within the screen",
                           "Set its mode and place again, and start anew.");
-    XImage* const image =
-        XGetImage(parts_->display, DefaultRootWindow(parts_->display), m.x, m.y, static_cast<unsigned>(m.width),
-                  static_cast<unsigned>(m.height), AllPlanes, ZPixmap);
+    XImage* const image = XGetImage(display, DefaultRootWindow(display), m.x, m.y, static_cast<unsigned>(m.width),
+                                    static_cast<unsigned>(m.height), AllPlanes, ZPixmap);
     if (!image || image->bits_per_pixel != 32)
         throw DeviceError("Monitor " + m.name, "its picture cannot be read", "Use a display of 24 bits a pixel.");
     RgbImage picture(m.width, m.height);
@@ -60,13 +58,11 @@ RgbImage MonitorPicture::look() {
 }
 
 bool desktop_is_composited() {
-    Display* const display = XOpenDisplay(nullptr);
-    if (display == nullptr) return false;
-    const std::string owner = "_NET_WM_CM_S" + std::to_string(DefaultScreen(display));
-    const Atom selection = XInternAtom(display, owner.c_str(), True);
-    const bool composited = selection != None && XGetSelectionOwner(display, selection) != None;
-    XCloseDisplay(display);
-    return composited;
+    const X11Display display(XOpenDisplay(nullptr));
+    if (!display) return false;
+    const std::string owner = "_NET_WM_CM_S" + std::to_string(DefaultScreen(display.get()));
+    const Atom selection = XInternAtom(display.get(), owner.c_str(), True);
+    return selection != None && XGetSelectionOwner(display.get(), selection) != None;
 }
 
 }  // namespace planlight

@@ -7,15 +7,12 @@
 #include <algorithm>
 #include <chrono>
 
+#include "projection/x11_pointers.h"
+
 namespace planlight {
 namespace {
 
 constexpr auto kTellEvery = std::chrono::seconds(30);
-
-struct CloseDisplay {
-    void operator()(Display* display) const { XCloseDisplay(display); }
-};
-using OpenDisplay = std::unique_ptr<Display, CloseDisplay>;
 
 bool can_suspend(Display* display) {
     int event = 0, error = 0, major = 0, minor = 0;
@@ -36,7 +33,7 @@ std::optional<CARD16> power_level(Display* display) {
 }  // namespace
 
 struct MonitorsKeptOn::Connection {
-    OpenDisplay display{XOpenDisplay(nullptr)};
+    X11Display display{XOpenDisplay(nullptr)};
 };
 
 MonitorsKeptOn::MonitorsKeptOn() : connection_(std::make_unique<Connection>()) {
@@ -60,7 +57,7 @@ MonitorsKeptOn::~MonitorsKeptOn() {
 }
 
 std::optional<MonitorsDarkAfter> monitors_dark_after() {
-    const OpenDisplay opened(XOpenDisplay(nullptr));
+    const X11Display opened(XOpenDisplay(nullptr));
     Display* const display = opened.get();
     if (display == nullptr) return std::nullopt;
     MonitorsDarkAfter dark;

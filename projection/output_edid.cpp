@@ -1,21 +1,11 @@
 #include <X11/Xatom.h>
-#include <X11/Xlib.h>
 #include <X11/extensions/Xrandr.h>
 
-#include <memory>
-
 #include "projection/edid.h"
+#include "projection/x11_pointers.h"
 
 namespace planlight {
 namespace {
-
-template <auto Free>
-struct Freed {
-    template <class T>
-    void operator()(T* pointer) const {
-        Free(pointer);
-    }
-};
 
 std::vector<std::uint8_t> property_of(Display* display, RROutput output) {
     const Atom edid = XInternAtom(display, "EDID", True);
@@ -28,7 +18,7 @@ std::vector<std::uint8_t> property_of(Display* display, RROutput output) {
     if (XRRGetOutputProperty(display, output, edid, 0, kMost, False, False, AnyPropertyType, &type, &format, &items,
                              &more, &data) != Success)
         return {};
-    const std::unique_ptr<unsigned char, Freed<XFree>> owned(data);
+    const X11Pointer<unsigned char, XFree> owned(data);
     if (data == nullptr || type != XA_INTEGER || format != 8) return {};
     return {data, data + items};
 }
@@ -36,14 +26,14 @@ std::vector<std::uint8_t> property_of(Display* display, RROutput output) {
 }  // namespace
 
 std::optional<Edid> edid_of_output(const std::string& name) {
-    const std::unique_ptr<Display, Freed<XCloseDisplay>> display(XOpenDisplay(nullptr));
+    const X11Display display(XOpenDisplay(nullptr));
     int event = 0, error = 0;
     if (!display || XRRQueryExtension(display.get(), &event, &error) == 0) return std::nullopt;
-    const std::unique_ptr<XRRScreenResources, Freed<XRRFreeScreenResources>> resources(
+    const X11Pointer<XRRScreenResources, XRRFreeScreenResources> resources(
         XRRGetScreenResourcesCurrent(display.get(), DefaultRootWindow(display.get())));
     if (!resources) return std::nullopt;
     for (int i = 0; i < resources->noutput; ++i) {
-        const std::unique_ptr<XRROutputInfo, Freed<XRRFreeOutputInfo>> info(
+        const X11Pointer<XRROutputInfo, XRRFreeOutputInfo> info(
             XRRGetOutputInfo(display.get(), resources.get(), resources->outputs[i]));
         if (info && name == std::string(info->name, static_cast<std::size_t>(info->nameLen)))
             return parse_edid(property_of(display.get(), resources->outputs[i]));

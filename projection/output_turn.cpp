@@ -5,20 +5,21 @@
 #include <GLFW/glfw3native.h>
 #include <X11/extensions/Xrandr.h>
 
+#include "projection/x11_pointers.h"
+
 namespace planlight {
 namespace {
 
 /// True where the transformation is not the identity.
 bool is_scaled(Display* display, RRCrtc output) {
-    XRRCrtcTransformAttributes* attributes = nullptr;
-    if (XRRGetCrtcTransform(display, output, &attributes) == 0 || attributes == nullptr) return false;
-    bool scaled = false;
+    XRRCrtcTransformAttributes* told = nullptr;
+    if (XRRGetCrtcTransform(display, output, &told) == 0 || told == nullptr) return false;
+    const X11Pointer<XRRCrtcTransformAttributes, XFree> attributes(told);
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
-            scaled =
-                scaled || attributes->currentTransform.matrix[row][column] != (row == column ? XDoubleToFixed(1) : 0);
-    XFree(attributes);
-    return scaled;
+            if (attributes->currentTransform.matrix[row][column] != (row == column ? XDoubleToFixed(1) : 0))
+                return true;
+    return false;
 }
 
 }  // namespace
@@ -27,18 +28,13 @@ std::optional<OutputTurn> output_turn(GLFWmonitor* monitor) {
     Display* const display = glfwGetX11Display();
     const RRCrtc output = display != nullptr ? glfwGetX11Adapter(monitor) : None;
     if (output == None) return std::nullopt;
-    XRRScreenResources* const resources =
-        XRRGetScreenResourcesCurrent(display, RootWindow(display, DefaultScreen(display)));
-    if (resources == nullptr) return std::nullopt;
-    XRRCrtcInfo* const info = XRRGetCrtcInfo(display, resources, output);
-    XRRFreeScreenResources(resources);
-    if (info == nullptr) return std::nullopt;
-    OutputTurn turn{info->rotation, static_cast<int>(info->width), static_cast<int>(info->height), false};
-    const bool is_on = info->mode != None;
-    XRRFreeCrtcInfo(info);
-    if (!is_on) return std::nullopt;
-    turn.scaled = is_scaled(display, output);
-    return turn;
+    const X11Pointer<XRRScreenResources, XRRFreeScreenResources> resources(
+        XRRGetScreenResourcesCurrent(display, DefaultRootWindow(display)));
+    if (!resources) return std::nullopt;
+    const X11Pointer<XRRCrtcInfo, XRRFreeCrtcInfo> info(XRRGetCrtcInfo(display, resources.get(), output));
+    if (!info || info->mode == None) return std::nullopt;
+    return OutputTurn{info->rotation, static_cast<int>(info->width), static_cast<int>(info->height),
+                      is_scaled(display, output)};
 }
 
 }  // namespace planlight

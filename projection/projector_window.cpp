@@ -144,12 +144,7 @@ struct ProjectorWindow::Parts {
         handle = handles.at(index);
         monitor = describe(handle);
         turn = output_turn(handle);
-        if (turn && (turn->scaled || turn->width != monitor.width || turn->height != monitor.height))
-            throw DeviceError("Projector window",
-                              "monitor " + monitor.name + " is scaled: it shows " +
-                                  rectangle_size(turn->width, turn->height) + " of the desktop on " +
-                                  rectangle_size(monitor.width, monitor.height) + " pixels",
-                              "Set its scale to 1, in the desktop's settings of monitors or with xrandr.");
+        refuse_scaled();
         lock.emplace(monitor.name);
         window = hidden_window(monitor);
         above.emplace(window);
@@ -167,6 +162,15 @@ struct ProjectorWindow::Parts {
     Parts(const Parts&) = delete;
     Parts& operator=(const Parts&) = delete;
     ~Parts() { close(); }
+
+    void refuse_scaled() const {
+        if (!turn || (!turn->scaled && turn->width == monitor.width && turn->height == monitor.height)) return;
+        throw DeviceError("Projector window",
+                          "monitor " + monitor.name + " is scaled: it shows " +
+                              rectangle_size(turn->width, turn->height) + " of the desktop on " +
+                              rectangle_size(monitor.width, monitor.height) + " pixels",
+                          "Set its scale to 1, in the desktop's settings of monitors or with xrandr.");
+    }
 
     void close() noexcept {
         picture.reset();
@@ -244,11 +248,20 @@ struct ProjectorWindow::Parts {
     void check_place() {
         const std::string problem = misplacement();
         if (!problem.empty()) refuse(problem);
+        check_turn();
+        check_nothing_above();
+    }
+
+    void check_turn() {
         const auto now = std::chrono::steady_clock::now();
-        if (now - turn_looked_at > kTurnLooks) {
-            turn_looked_at = now;
-            if (output_turn(handle) != turn) refuse("monitor " + monitor.name + " was turned, mirrored or scaled");
-        }
+        if (now - turn_looked_at < kTurnLooks) return;
+        turn_looked_at = now;
+        if (output_turn(handle) != turn) refuse("monitor " + monitor.name + " was turned, mirrored or scaled");
+    }
+
+    /// What can be raised over is no fault.
+    void check_nothing_above() {
+        const auto now = std::chrono::steady_clock::now();
         if (!above->look()) {
             above_since.reset();
         } else if (!above_since) {

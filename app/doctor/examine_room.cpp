@@ -154,7 +154,10 @@ private:
         for (const Monitor& monitor : monitors)
             if (monitor.name == room_.monitor) figures.found = monitor;
         if (figures.found) {
-            figures.desktop_lit = lit_share(MonitorPicture(room_.monitor).look());
+            try {
+                figures.desktop_lit = lit_share(MonitorPicture(room_.monitor).look());
+            } catch (const DeviceError&) {  // it cannot be read: what is asked of the monitor goes on
+            }
             figures.composited = desktop_is_composited();
         }
         monitor_ = figures;

@@ -12,7 +12,7 @@
 
 #include "app/windows/layout.h"
 #include "app/windows/status_word.h"
-#include "app/windows/window_workspace.h"
+#include "app/windows/x11_window_state.h"
 #include "planning_io/types/error.h"
 #include "projection/glfw_session.h"
 #include "projection/monitors_kept_on.h"

@@ -1,4 +1,4 @@
-#include "app/windows/window_workspace.h"
+#include "app/windows/x11_window_state.h"
 
 #define GLFW_EXPOSE_NATIVE_X11
 #include <GLFW/glfw3.h>
