@@ -155,7 +155,9 @@ public:
             if (update.frame.at - began > 1s) {
                 ++outcome.updates;
                 if (ruling.trust != LightTrust::aligned)
-                    ++outcome.not_green, outcome.not_green_for = ruling.headline + seen;
+                    ++outcome.not_green,
+                        outcome.not_green_for =
+                            ruling.headline + " " + (ruling.details.empty() ? "" : ruling.details.front()) + seen;
             }
             const bool corrected = session_.found_delay() != found_before && outcome.named == "nothing";
             outcome.dark = outcome.dark || !update.overlay.lit;
