@@ -22,4 +22,21 @@ std::string keyboard_owner() {
     return owner;
 }
 
+KeyboardTaken::KeyboardTaken() {
+    Display* const display = XOpenDisplay(nullptr);
+    if (display == nullptr) throw std::runtime_error("no display");
+    display_ = display;
+    XSetWindowAttributes wanted{};
+    wanted.override_redirect = True;
+    const Window window = XCreateWindow(display, DefaultRootWindow(display), 0, 0, 1, 1, 0, 0, InputOnly, nullptr,
+                                        CWOverrideRedirect, &wanted);
+    XMapWindow(display, window);
+    XSetInputFocus(display, window, RevertToPointerRoot, CurrentTime);
+    XSync(display, False);
+}
+
+KeyboardTaken::~KeyboardTaken() {
+    XCloseDisplay(static_cast<Display*>(display_));
+}
+
 }  // namespace planlight::test

@@ -91,6 +91,10 @@ void run(const std::string& folder) {
     const std::string keyboard = test::keyboard_owner();
     expect(keyboard != "Planlight projector",
            "the projector's window has not taken the keyboard (" + keyboard + " has it)");
+    {
+        const test::KeyboardTaken taken;
+        expect(operator_window.keyboard_is_elsewhere(), "that no key reaches the operator window is known");
+    }
     expect(different(before, second, black) == 0, "the second monitor is black at first");
 
     const Instant asked = clock.now(), lit = projector.show(picture, clock.now() + seconds(60));
