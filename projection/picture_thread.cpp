@@ -4,9 +4,12 @@
 
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <new>
 #include <stdexcept>
+#include <vector>
 
 #include "planning_io/types/error.h"
 
@@ -15,6 +18,7 @@ namespace {
 
 constexpr auto kToStart = std::chrono::seconds(5);
 constexpr auto kHangs = std::chrono::milliseconds(500);     ///< a picture that is not drawn by then
+constexpr int kAttempts = 3;                                ///< at a picture that does not read back
 constexpr auto kExpiryPoll = std::chrono::milliseconds(3);  ///< the injected clock can only be asked, not waited for
 
 const char* const kVertexShader =
@@ -42,6 +46,38 @@ GLuint compile(GLenum kind, const char* source) {
     return shader;
 }
 
+struct Place {
+    int x = 0, y = 0;  ///< the first row is the top one
+};
+
+/// Where a picture is told from black: at the first and the last pixel that is lit. Empty where none is.
+std::vector<Place> lit_places(const RgbImage& picture) {
+    const auto& pixels = picture.pixels;
+    const auto lit = [](const Rgb& pixel) { return pixel != Rgb{}; };
+    const auto first = std::find_if(pixels.begin(), pixels.end(), lit);
+    if (first == pixels.end()) return {};
+    const auto last = std::find_if(pixels.rbegin(), pixels.rend(), lit).base() - 1;
+    std::vector<Place> places;
+    for (const auto found : {first, last}) {
+        const auto index = static_cast<int>(found - pixels.begin());
+        places.push_back({index % picture.width, index / picture.width});
+    }
+    return places;
+}
+
+/// What is in the window's buffer at a place, against what should be. Nothing is read from a lost context: the values
+/// that were there before are still there then, and no pixel has both of them.
+bool reads_back(Place place, int height, const Rgb& expected) {
+    constexpr int kRounding = 8;  // screens of 16 bits a pixel
+    for (const std::uint8_t before : {std::uint8_t{0x55}, std::uint8_t{0xAA}}) {
+        std::uint8_t read[4] = {before, before, before, before};
+        glReadPixels(place.x, height - 1 - place.y, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, read);
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            if (std::abs(int{read[channel]} - int{expected[channel]}) > kRounding) return false;
+    }
+    return true;
+}
+
 DeviceError failed(const std::string& problem) {
     return {"projector window", problem, "update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1"};
 }
@@ -50,7 +86,7 @@ DeviceError failed(const std::string& problem) {
 
 /// The GL objects; lives on the thread.
 struct PictureThread::Painter {
-    Painter(GLFWwindow* w, int width, int height) : window(w) {
+    Painter(GLFWwindow* w, int wide, int high) : window(w), width(wide), height(high) {
         glfwMakeContextCurrent(window);
         glfwSwapInterval(1);
         glViewport(0, 0, width, height);
@@ -76,24 +112,45 @@ struct PictureThread::Painter {
     Painter& operator=(const Painter&) = delete;
     ~Painter() { glfwMakeContextCurrent(nullptr); }
 
-    void draw(const RgbImage& picture) {
+    /// With `read_back` a picture, or black, that is not in the window's buffer afterwards is a failure: so a graphics
+    /// driver that lost its context and quietly draws nothing is found, while what it drew last is still lit.
+    void draw(const RgbImage& picture, bool read_back) {
         glfwGetError(nullptr);  // what was complained of before
-        glClearColor(0, 0, 0, 1);
-        glClear(GL_COLOR_BUFFER_BIT);
-        if (!picture.empty()) {
-            glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, picture.width, picture.height, 0, GL_RGB, GL_UNSIGNED_BYTE,
-                         picture.pixels.data());
-            glDrawArrays(GL_TRIANGLES, 0, 3);
+        bool drawn = false;
+        for (int attempt = 0; attempt < kAttempts && !drawn; ++attempt) {
+            put(picture);
+            const GLenum error = glGetError();
+            if (error != GL_NO_ERROR) glClear(GL_COLOR_BUFFER_BIT);  // black first, then the report
+            drawn = error == GL_NO_ERROR && (!read_back || is_in_buffer(picture));
+            glfwSwapBuffers(window);
+            glFinish();
+            if (error != GL_NO_ERROR)
+                throw std::runtime_error("the graphics driver reports error " + std::to_string(error));
         }
-        const GLenum error = glGetError();
-        if (error != GL_NO_ERROR) glClear(GL_COLOR_BUFFER_BIT);  // black first, then the report
-        glfwSwapBuffers(window);
-        glFinish();
-        if (error != GL_NO_ERROR)
-            throw std::runtime_error("the graphics driver reports error " + std::to_string(error));
+        if (!drawn) throw std::runtime_error("the graphics driver does not draw what it is told any more");
+        lit_before = lit_places(picture);
         const char* complaint = nullptr;
         if (glfwGetError(&complaint) != GLFW_NO_ERROR)
             throw std::runtime_error(std::string("its picture was not shown: ") + complaint);
+    }
+
+    void put(const RgbImage& picture) const {
+        glClearColor(0, 0, 0, 1);
+        glClear(GL_COLOR_BUFFER_BIT);
+        if (picture.empty()) return;
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, picture.width, picture.height, 0, GL_RGB, GL_UNSIGNED_BYTE,
+                     picture.pixels.data());
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+
+    /// At its own lit places, and at those of the picture before.
+    bool is_in_buffer(const RgbImage& picture) const {
+        const auto as_told = [&](Place at) {
+            return reads_back(at, height, picture.empty() ? Rgb{} : picture.at(at.x, at.y));
+        };
+        const std::vector<Place> lit_now = lit_places(picture);
+        return as_told({width / 2, height / 2}) && std::all_of(lit_before.begin(), lit_before.end(), as_told) &&
+               std::all_of(lit_now.begin(), lit_now.end(), as_told);
     }
 
     /// The last that can be done once something has failed; whether it is seen nobody can tell.
@@ -105,6 +162,8 @@ struct PictureThread::Painter {
     }
 
     GLFWwindow* window;
+    int width, height;
+    std::vector<Place> lit_before;  ///< of the picture that was drawn last
     GLuint vertices = 0, texture = 0, program = 0;
 };
 
@@ -179,6 +238,13 @@ void PictureThread::redraw() {
     wanted_changed_.notify_all();
 }
 
+void PictureThread::read_back() {
+    const std::lock_guard lock(mutex_);
+    read_back_ = true;
+    ++wanted_;
+    wanted_changed_.notify_all();
+}
+
 bool PictureThread::dark() const {
     const std::lock_guard lock(mutex_);
     return !lit_ || clock_.now() >= valid_until_;
@@ -209,14 +275,15 @@ void PictureThread::draw_what_is_wanted(Painter& painter) {
         if (stop_) break;
         const std::uint64_t number = wanted_;
         const RgbImage picture = picture_;
+        const bool read_back = read_back_;
         lock.unlock();
-        painter.draw(picture);
+        painter.draw(picture, read_back);
         lock.lock();
         drawn_ = number;
         drawn_changed_.notify_all();
     }
     lock.unlock();
-    painter.draw({});
+    painter.draw({}, false);
 }
 
 void PictureThread::run() {

@@ -37,6 +37,9 @@ public:
     void check();
     /// Draws again what should be seen (the window system lost it).
     void redraw();
+    /// From now on what is drawn is read back, beginning with a redraw: for a window that is seen and stays where it is
+    /// (of another the buffer need not hold anything).
+    void read_back();
     bool dark() const;
 
 private:
@@ -54,7 +57,7 @@ private:
     std::condition_variable wanted_changed_, drawn_changed_;
     RgbImage picture_;  ///< empty: black
     Instant valid_until_{};
-    bool lit_ = false, stop_ = false;
+    bool lit_ = false, stop_ = false, read_back_ = false;
     std::uint64_t wanted_ = 0, drawn_ = 0;  ///< counts of requests
     /// Since when `check` has seen that something is to be drawn, and how much had been drawn then.
     std::optional<std::chrono::steady_clock::time_point> behind_since_;

@@ -199,7 +199,7 @@ struct ProjectorWindow::Parts {
                 refuse(problem.empty() ? "the window does not stay on its monitor" : problem);
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
-        picture->redraw();
+        picture->read_back();
     }
 
     /// Why the window does not cover exactly its monitor; empty when it does.

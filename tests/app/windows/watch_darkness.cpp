@@ -2,10 +2,11 @@
 // server with two monitors: `watch_darkness FOLDER`, with PLANLIGHT the program (for its projector process) and ROUNDS
 // how often each fault is tried (default 3), of which FROM_FAULT leaves the first ones out (0: none). The same
 // executable, as `watch_darkness hold MONITOR`, is the program that is stopped, killed, or made to hang while its light
-// is on. Exit code 0 when every light was dark in 300 ms. With HANG_IN_SWAP, the library of that name, also a graphics
+// is on. Exit code 0 when every light was dark in 300 ms. With FAULTY_DRIVER, the library of that name, also a graphics
 // driver that hangs before a picture expires, while nothing else is ordered: dark in 900 ms, or in 400 ms from the end
 // of the program; and one that hangs while pictures come thirty times a second: dark in 650 ms, also where the program
-// is stopped.
+// is stopped; and one that lost its context and draws nothing any more, as a picture expires or between two: dark in
+// 300 ms.
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -146,28 +147,34 @@ void watch(const char* self, const Monitor& monitor, int rounds) {
     }
 }
 
-/// A graphics driver that hangs from a moment on. What is lit then can be taken down by the end of its process alone.
-struct Hang {
-    const char *name, *setting, *value;  ///< what the holder of the light is told
-    Instant until_fault;                 ///< from the light on
-    bool hangs_before = false;           ///< the driver hangs all that time, and the picture expires at its end
-    int signal = 0;                      ///< to the program at the fault; 0: none
+/// A graphics driver that fails from a moment on. What is lit then can be taken down by the end of its process alone.
+struct DriverFault {
+    const char* name;
+    const char* kind;             ///< the variable of the faulty driver that names the file
+    const char *setting, *value;  ///< what the holder of the light is told
+    Instant until_fault;          ///< from the light on
+    bool fails_before = false;    ///< the driver fails all that time, and the picture expires at its end
+    int signal = 0;               ///< to the program at the fault; 0: none
     Instant longest;
 };
-constexpr Hang kHangs[] = {
-    {"the graphics driver hangs as a picture expires", "EXPIRES_MS", "600", 600ms, true, 0, 900ms},
-    {"the same, and the program is killed", "EXPIRES_MS", "600", 600ms, true, SIGKILL, 400ms},
-    {"the graphics driver hangs in a picture", "PICTURES_EVERY_MS", "33", 200ms, false, 0, 650ms},
-    {"the same, and the program is stopped", "PICTURES_EVERY_MS", "33", 200ms, false, SIGSTOP, 650ms},
+constexpr const char *kHang = "HANG_WHEN", *kLost = "LOSE_CONTEXT_WHEN";
+constexpr const char *kExpiry = "EXPIRES_MS", *kPictures = "PICTURES_EVERY_MS";
+constexpr DriverFault kDriverFaults[] = {
+    {"the graphics driver hangs as a picture expires", kHang, kExpiry, "600", 600ms, true, 0, 900ms},
+    {"the same, and the program is killed", kHang, kExpiry, "600", 600ms, true, SIGKILL, 400ms},
+    {"the graphics driver hangs in a picture", kHang, kPictures, "33", 200ms, false, 0, 650ms},
+    {"the same, and the program is stopped", kHang, kPictures, "33", 200ms, false, SIGSTOP, 650ms},
+    {"the graphics driver draws nothing as a picture expires", kLost, kExpiry, "600", 600ms, true, 0, kLongest},
+    {"the graphics driver draws nothing between two pictures", kLost, kPictures, "33", 200ms, false, 0, kLongest},
 };
 
-void watch_hanging_driver(const char* self, const Monitor& monitor, int rounds, const std::string& folder) {
-    const std::string file = folder + "/hang_now";
-    setenv("LD_PRELOAD", std::getenv("HANG_IN_SWAP"), 1);
-    setenv("HANG_WHEN", file.c_str(), 1);
+void watch_faulty_driver(const char* self, const Monitor& monitor, int rounds, const std::string& folder) {
+    const std::string file = folder + "/fail_now";
+    setenv("LD_PRELOAD", std::getenv("FAULTY_DRIVER"), 1);
     const test::ScreenPixel eye(monitor);
-    for (const Hang& hang : kHangs) {
-        setenv(hang.setting, hang.value, 1);
+    for (const DriverFault& fault : kDriverFaults) {
+        setenv(fault.setting, fault.value, 1);
+        setenv(fault.kind, file.c_str(), 1);
         Instant worst{};
         int never = 0;
         for (int round = 0; round < rounds; ++round) {
@@ -175,23 +182,23 @@ void watch_hanging_driver(const char* self, const Monitor& monitor, int rounds, 
             const Holder holder = start_holder(self, monitor.name);
             const Instant lit = SteadyClock().now();
             if (holder.projector <= 0 || !eye.lit()) expect(false, "there was light before");
-            if (hang.hangs_before) std::fclose(std::fopen(file.c_str(), "w"));
-            std::this_thread::sleep_for(hang.until_fault - (SteadyClock().now() - lit));
-            if (!hang.hangs_before) std::fclose(std::fopen(file.c_str(), "w"));
-            if (hang.signal != 0) kill(holder.program, hang.signal);
+            if (fault.fails_before) std::fclose(std::fopen(file.c_str(), "w"));
+            std::this_thread::sleep_for(fault.until_fault - (SteadyClock().now() - lit));
+            if (!fault.fails_before) std::fclose(std::fopen(file.c_str(), "w"));
+            if (fault.signal != 0) kill(holder.program, fault.signal);
             if (const auto dark = eye.until_dark(5s))
                 worst = std::max(worst, *dark);
             else
                 ++never;
             holder.end();
         }
-        expect(never == 0 && worst <= hang.longest,
-               fmt::format("{}: dark after {:.0f} ms (worst of {}), never {} times", hang.name, 1000 * seconds(worst),
+        expect(never == 0 && worst <= fault.longest,
+               fmt::format("{}: dark after {:.0f} ms (worst of {}), never {} times", fault.name, 1000 * seconds(worst),
                            rounds, never));
-        unsetenv(hang.setting);
+        for (const char* name : {fault.setting, fault.kind}) unsetenv(name);
     }
     unlink(file.c_str());
-    for (const char* name : {"LD_PRELOAD", "HANG_WHEN"}) unsetenv(name);
+    unsetenv("LD_PRELOAD");
 }
 
 void second_master(const Monitor& monitor) {
@@ -222,8 +229,8 @@ int main(int argc, char** argv) {
     if (std::getenv("PLANLIGHT") == nullptr || monitors.size() != 2) return 2;
     const int rounds = std::getenv("ROUNDS") == nullptr ? 3 : std::atoi(std::getenv("ROUNDS"));
     second_master(monitors[1]);
-    if (std::getenv("HANG_IN_SWAP") != nullptr)
-        watch_hanging_driver(argv[0], monitors[1], rounds, argc > 1 ? argv[1] : "/tmp");
+    if (std::getenv("FAULTY_DRIVER") != nullptr)
+        watch_faulty_driver(argv[0], monitors[1], rounds, argc > 1 ? argv[1] : "/tmp");
     watch(argv[0], monitors[1], rounds);
     return test::failures() == 0 ? 0 : 1;
 }
