@@ -6,6 +6,7 @@
 // Last: its macros are everywhere.
 #include <X11/Xutil.h>
 
+#include "projection/x11_compositor.h"
 #include "projection/x11_pointers.h"
 
 namespace planlight {
@@ -59,10 +60,7 @@ RgbImage MonitorPicture::look() {
 
 bool desktop_is_composited() {
     const X11Display display(XOpenDisplay(nullptr));
-    if (!display) return false;
-    const std::string owner = "_NET_WM_CM_S" + std::to_string(DefaultScreen(display.get()));
-    const Atom selection = XInternAtom(display.get(), owner.c_str(), True);
-    return selection != None && XGetSelectionOwner(display.get(), selection) != None;
+    return display && is_composited(display.get());
 }
 
 }  // namespace planlight

@@ -24,7 +24,7 @@ namespace {
 
 constexpr auto kLandingPatience = std::chrono::milliseconds(1500);
 constexpr auto kTurnLooks = std::chrono::milliseconds(100);     ///< how often the output is asked how it is turned
-constexpr auto kAboveAllowed = std::chrono::milliseconds(150);  ///< for another window to be before ours
+constexpr auto kAboveAllowed = std::chrono::milliseconds(120);  ///< for another window to be before ours
 constexpr auto kSettled =
     std::chrono::milliseconds(150);  ///< a window manager may still move a window that just landed
 

@@ -3,15 +3,133 @@
 #define GLFW_EXPOSE_NATIVE_X11
 #include <GLFW/glfw3.h>
 #include <GLFW/glfw3native.h>
+#include <X11/extensions/shape.h>
 
+#include <algorithm>
+#include <chrono>
+#include <span>
+#include <vector>
+
+#include "projection/x11_compositor.h"
 #include "projection/x11_pointers.h"
 
 namespace planlight {
+namespace {
+
+constexpr auto kOrderLooks = std::chrono::milliseconds(20);  ///< how often a composited desktop is asked for its order
+
+struct Rectangle {
+    int x = 0, y = 0, width = 0, height = 0;
+
+    bool meets(const Rectangle& o) const {
+        return x < o.x + o.width && o.x < x + width && y < o.y + o.height && o.y < y + height;
+    }
+};
+
+/// While it lives, errors on its connection count for nothing: other programs' windows may be gone at any moment. Those
+/// on other connections go where they went before.
+class ForgivenErrors {
+public:
+    explicit ForgivenErrors(Display* connection) {
+        forgiven() = connection;
+        before() = XSetErrorHandler([](Display* display, XErrorEvent* error) {
+            return display == forgiven() || before() == nullptr ? 0 : before()(display, error);
+        });
+    }
+    ~ForgivenErrors() {
+        XSync(forgiven(), False);
+        XSetErrorHandler(before());
+    }
+    ForgivenErrors(const ForgivenErrors&) = delete;
+    ForgivenErrors& operator=(const ForgivenErrors&) = delete;
+
+private:
+    static Display*& forgiven() {
+        static Display* display = nullptr;
+        return display;
+    }
+    static XErrorHandler& before() {
+        static XErrorHandler handler = nullptr;
+        return handler;
+    }
+};
+
+struct Family {
+    ::Window parent = None;
+    std::vector<::Window> children;  ///< from the lowest up
+};
+
+Family family_of(Display* display, ::Window window) {
+    Family family;
+    ::Window root = None, *list = nullptr;
+    unsigned count = 0;
+    if (XQueryTree(display, window, &root, &family.parent, &list, &count) == 0) return family;
+    const X11Pointer<::Window, XFree> owned(list);
+    family.children.assign(list, list + count);
+    return family;
+}
+
+/// Whether that child of the root is seen and takes the mouse in a part of the rectangle. What lets the mouse through
+/// there is no window of a person's: a compositor draws all others into one of that kind.
+bool covers(Display* display, ::Window window, const Rectangle& wanted) {
+    XWindowAttributes a;
+    if (XGetWindowAttributes(display, window, &a) == 0 || a.map_state != IsViewable || a.c_class != InputOutput)
+        return false;
+    const Rectangle whole{a.x, a.y, a.width + 2 * a.border_width, a.height + 2 * a.border_width};
+    if (!whole.meets(wanted)) return false;
+    int count = 0, order = 0;
+    const X11Pointer<XRectangle, XFree> list(XShapeGetRectangles(display, window, ShapeInput, &count, &order));
+    const std::span parts(list.get(), static_cast<std::size_t>(count));
+    return std::any_of(parts.begin(), parts.end(), [&](const XRectangle& part) {
+        return Rectangle{a.x + a.border_width + part.x, a.y + a.border_width + part.y, part.width, part.height}.meets(
+            wanted);
+    });
+}
+
+/// Whether, by the order of the root's children, a window lies before a part of this one.
+bool is_below_another(Display* display, ::Window window) {
+    const ForgivenErrors forgiven(display);
+    const ::Window root = DefaultRootWindow(display);
+    XWindowAttributes own;
+    int x = 0, y = 0;
+    ::Window child = None;
+    if (XGetWindowAttributes(display, window, &own) == 0) return false;
+    XTranslateCoordinates(display, window, root, 0, 0, &x, &y, &child);
+    ::Window frame = window;  // of the window manager's, where it has one
+    for (Family up = family_of(display, frame); up.parent != root; up = family_of(display, frame)) {
+        if (up.parent == None) return false;
+        frame = up.parent;
+    }
+    const std::vector<::Window> all = family_of(display, root).children;
+    const auto at = std::find(all.begin(), all.end(), frame);
+    return at != all.end() && std::any_of(at + 1, all.end(), [&](::Window other) {
+               return covers(display, other, {x, y, own.width, own.height});
+           });
+}
+
+}  // namespace
 
 struct WindowAbove::Parts {
     X11Display connection;
     ::Window window = 0;
-    bool above = false;
+    bool obscured = false;  ///< as the window system told it last
+    bool below = false;     ///< by the order of a composited desktop
+    std::chrono::steady_clock::time_point order_looked_at{};
+
+    void read_events() {
+        while (XPending(connection.get()) > 0) {
+            XEvent event;
+            XNextEvent(connection.get(), &event);
+            if (event.type == VisibilityNotify) obscured = event.xvisibility.state != VisibilityUnobscured;
+        }
+    }
+
+    void look_at_order() {
+        const auto now = std::chrono::steady_clock::now();
+        if (now - order_looked_at < kOrderLooks) return;
+        order_looked_at = now;
+        below = is_composited(connection.get()) && is_below_another(connection.get(), window);
+    }
 };
 
 WindowAbove::WindowAbove(GLFWwindow* window) : parts_(std::make_unique<Parts>()) {
@@ -27,12 +145,10 @@ WindowAbove::WindowAbove(GLFWwindow* window) : parts_(std::make_unique<Parts>())
 WindowAbove::~WindowAbove() = default;
 
 bool WindowAbove::look() {
-    while (parts_->connection && XPending(parts_->connection.get()) > 0) {
-        XEvent event;
-        XNextEvent(parts_->connection.get(), &event);
-        if (event.type == VisibilityNotify) parts_->above = event.xvisibility.state != VisibilityUnobscured;
-    }
-    return parts_->above;
+    if (!parts_->connection) return false;
+    parts_->read_events();
+    parts_->look_at_order();
+    return parts_->obscured || parts_->below;
 }
 
 void WindowAbove::raise() {

@@ -27,6 +27,27 @@ unsigned ScreenPixel::colour() const {
     return colour;
 }
 
+namespace {
+
+template <class Fact>
+bool becomes_true(const Fact& fact, Instant patience) {
+    const SteadyClock clock;
+    for (const Instant until = clock.now() + patience; clock.now() < until;
+         std::this_thread::sleep_for(std::chrono::milliseconds(1)))
+        if (fact()) return true;
+    return fact();
+}
+
+}  // namespace
+
+bool ScreenPixel::shows_soon(unsigned wanted, Instant patience) const {
+    return becomes_true([&] { return colour() == wanted; }, patience);
+}
+
+bool ScreenPixel::lit_soon(Instant patience) const {
+    return becomes_true([&] { return lit(); }, patience);
+}
+
 std::optional<Instant> ScreenPixel::until_dark(Instant patience) const {
     const SteadyClock clock;
     const Instant start = clock.now();

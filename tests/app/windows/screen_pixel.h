@@ -18,6 +18,9 @@ public:
     /// 0xRRGGBB.
     unsigned colour() const;
     bool lit() const { return colour() != 0; }
+    /// Waits for that colour, for a compositor takes its time; whether it came within `patience`.
+    bool shows_soon(unsigned colour, Instant patience = std::chrono::milliseconds(300)) const;
+    bool lit_soon(Instant patience = std::chrono::milliseconds(300)) const;
     /// How long until it is dark; empty after `patience`.
     std::optional<Instant> until_dark(Instant patience) const;
 

@@ -128,7 +128,7 @@ void watch(const char* self, const Monitor& monitor, int rounds) {
         int never = 0;
         for (int round = 0; round < rounds; ++round) {
             const Holder holder = start_holder(self, monitor.name);
-            const bool lit = holder.projector > 0 && eye.lit();
+            const bool lit = holder.projector > 0 && eye.lit_soon();
             if (!lit) expect(false, std::string(fault.name) + ": there was light before");
             std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms(random)));
             fault.strike(holder);
@@ -181,7 +181,7 @@ void watch_faulty_driver(const char* self, const Monitor& monitor, int rounds, c
             unlink(file.c_str());
             const Holder holder = start_holder(self, monitor.name);
             const Instant lit = SteadyClock().now();
-            if (holder.projector <= 0 || !eye.lit()) expect(false, "there was light before");
+            if (holder.projector <= 0 || !eye.lit_soon()) expect(false, "there was light before");
             if (fault.fails_before) std::fclose(std::fopen(file.c_str(), "w"));
             std::this_thread::sleep_for(fault.until_fault - (SteadyClock().now() - lit));
             if (!fault.fails_before) std::fclose(std::fopen(file.c_str(), "w"));
