@@ -1,37 +1,13 @@
 #include "projection/dark_cover.h"
 
-#include <X11/extensions/Xrandr.h>
+#include <X11/Xlib.h>
 
-#include <algorithm>
-#include <optional>
-#include <span>
 #include <utility>
 
+#include "projection/projector_output.h"
 #include "projection/x11_pointers.h"
 
 namespace planlight {
-namespace {
-
-bool overlap(const XRRMonitorInfo& a, const XRRMonitorInfo& b) {
-    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
-}
-
-/// The monitor of that name; empty where it must not be covered.
-std::optional<XRRMonitorInfo> find(Display* display, const std::string& name) {
-    int count = 0;
-    const X11Pointer<XRRMonitorInfo, XRRFreeMonitors> all(
-        XRRGetMonitors(display, DefaultRootWindow(display), True, &count));
-    if (!all) return std::nullopt;
-    const Atom wanted = XInternAtom(display, name.c_str(), True);
-    const std::span<const XRRMonitorInfo> monitors(all.get(), static_cast<std::size_t>(std::max(count, 0)));
-    const auto found = std::ranges::find_if(monitors, [&](const XRRMonitorInfo& m) { return m.name == wanted; });
-    if (found != monitors.end() && monitors.size() > 1 && found->primary == 0 &&
-        std::ranges::count_if(monitors, [&](const XRRMonitorInfo& m) { return overlap(m, *found); }) == 1)
-        return *found;
-    return std::nullopt;
-}
-
-}  // namespace
 
 struct DarkCover::Parts {
     std::string monitor;
@@ -65,7 +41,7 @@ void DarkCover::cover() noexcept {
     if (!parts_->connection) parts_->connection.reset(XOpenDisplay(nullptr));
     Display* const display = parts_->connection.get();
     if (display == nullptr) return;
-    const auto monitor = find(display, parts_->monitor);
+    const auto monitor = projector_output(display, parts_->monitor);
     if (!monitor) {
         uncover();
         return;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "projection/x11_compositor.h"
+#include "projection/x11_errors.h"
 #include "projection/x11_pointers.h"
 
 namespace planlight {
@@ -23,34 +24,6 @@ struct Rectangle {
 
     bool meets(const Rectangle& o) const {
         return x < o.x + o.width && o.x < x + width && y < o.y + o.height && o.y < y + height;
-    }
-};
-
-/// While it lives, errors on its connection count for nothing: other programs' windows may be gone at any moment. Those
-/// on other connections go where they went before.
-class ForgivenErrors {
-public:
-    explicit ForgivenErrors(Display* connection) {
-        forgiven() = connection;
-        before() = XSetErrorHandler([](Display* display, XErrorEvent* error) {
-            return display == forgiven() || before() == nullptr ? 0 : before()(display, error);
-        });
-    }
-    ~ForgivenErrors() {
-        XSync(forgiven(), False);
-        XSetErrorHandler(before());
-    }
-    ForgivenErrors(const ForgivenErrors&) = delete;
-    ForgivenErrors& operator=(const ForgivenErrors&) = delete;
-
-private:
-    static Display*& forgiven() {
-        static Display* display = nullptr;
-        return display;
-    }
-    static XErrorHandler& before() {
-        static XErrorHandler handler = nullptr;
-        return handler;
     }
 };
 
@@ -88,7 +61,6 @@ bool covers(Display* display, ::Window window, const Rectangle& wanted) {
 
 /// Whether, by the order of the root's children, a window lies before a part of this one.
 bool is_below_another(Display* display, ::Window window) {
-    const ForgivenErrors forgiven(display);
     const ::Window root = DefaultRootWindow(display);
     XWindowAttributes own;
     int x = 0, y = 0;
@@ -110,11 +82,18 @@ bool is_below_another(Display* display, ::Window window) {
 }  // namespace
 
 struct WindowAbove::Parts {
+    Parts() = default;
+    Parts(const Parts&) = delete;
+    Parts& operator=(const Parts&) = delete;
     X11Display connection;
     ::Window window = 0;
     bool obscured = false;  ///< as the window system told it last
     bool below = false;     ///< by the order of a composited desktop
     std::chrono::steady_clock::time_point order_looked_at{};
+
+    ~Parts() {
+        if (connection) forget_errors_on(connection.get());
+    }
 
     void read_events() {
         while (XPending(connection.get()) > 0) {
@@ -138,6 +117,7 @@ WindowAbove::WindowAbove(GLFWwindow* window) : parts_(std::make_unique<Parts>())
     parts_->window = glfwGetX11Window(window);
     parts_->connection.reset(XOpenDisplay(DisplayString(glfwGetX11Display())));
     if (!parts_->connection) return;
+    forgive_errors_on(parts_->connection.get());
     XSelectInput(parts_->connection.get(), parts_->window, VisibilityChangeMask);
     XSync(parts_->connection.get(), False);
 }

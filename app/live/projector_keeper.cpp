@@ -25,6 +25,7 @@ ProjectorKeeper::ProjectorKeeper(const std::string& monitor, const ProjectorKeep
       window_at_(clock_.now().count()),
       session_at_(clock_.now().count()),
       projector_(std::make_unique<ProjectorProcess>(monitor, settings.process)),
+      dark_watch_(std::make_unique<DarkWatch>(projector_->monitor())),
       monitor_(projector_->monitor()),
       width_(projector_->width()),
       height_(projector_->height()),
@@ -48,8 +49,10 @@ Instant ProjectorKeeper::show(const RgbImage& picture, Instant valid_until) {
     try {
         if (permitted_ && !permitted_()) {
             projector_->go_dark();
+            dark_watch_->expect_dark_by(clock_.now());
             return clock_.now();
         }
+        dark_watch_->expect_dark_from(valid_until);
         projector_->renew();  // a picture that comes before the lease, or right after darkness, would be lost
         return projector_->show(picture, valid_until);
     } catch (const Error& error) {
@@ -67,6 +70,7 @@ void ProjectorKeeper::set_permission(std::function<bool()> permitted) {
 void ProjectorKeeper::go_dark() noexcept {
     const std::lock_guard lock(mutex_);
     if (projector_) projector_->go_dark();
+    dark_watch_->expect_dark_by(clock_.now());
 }
 
 void ProjectorKeeper::disturb(int signal) noexcept {
@@ -115,6 +119,18 @@ void ProjectorKeeper::lose(const ProjectorProblem& problem) {
     projector_.reset();
     problem_ = problem;
     lost_at_ = clock_.now();
+    dark_watch_->expect_dark_by(lost_at_);
+}
+
+/// One that is lit though it should be dark is lost, and stays so until it is not.
+void ProjectorKeeper::check_dark() {
+    const DarkWatch::State state = dark_watch_->state();
+    if (state == DarkWatch::State::as_it_should) return;
+    const bool lit = state == DarkWatch::State::lit;
+    lose({"its monitor was to be dark, and the desktop still shows something there",
+          lit ? "Cover the lens, or switch the projector off. Log in to a desktop without a compositor."
+              : "It was made black by its gamma. Log in to a desktop without a compositor (openbox).",
+          lit});
 }
 
 void ProjectorKeeper::run(const std::stop_token& stop) {
@@ -131,6 +147,7 @@ void ProjectorKeeper::run(const std::stop_token& stop) {
                 if (alive()) projector_->renew();
             }
             lock.unlock();
+            check_dark();
             if (lost && (!covered_at || clock_.now() - *covered_at > kFollow)) cover.cover(), covered_at = clock_.now();
             if (lost && clock_.now() - lost_at > settings_.retry_after) start_again();  // beneath the cover
             if (!lost && covered_at) cover.uncover(), covered_at.reset();

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "planning_io/types/steady_clock.h"
+#include "projection/dark_watch.h"
 #include "projection/projector_process.h"
 
 namespace planlight {
@@ -31,7 +32,8 @@ struct ProjectorProblem {
 /// The projector of a session: its process is watched, its lease is kept only while the operator window and the session
 /// both show signs of life (where either hangs, it is dark), and it is started again when it was lost (unplugged,
 /// moved, its process ended): dark then, until the next picture, and its monitor covered (`DarkCover`), lest the
-/// desktop's own picture lies on the patient. On the same output then, also where it was asked for by its number.
+/// desktop's own picture lies on the patient. Where its monitor is lit though it should be dark (`DarkWatch`), it
+/// counts as lost until it is not. On the same output then, also where it was asked for by its number.
 ///
 /// May be used from any thread.
 class ProjectorKeeper final : public Projector {
@@ -65,6 +67,7 @@ private:
     bool window_alive() const;
     bool alive() const;
     void start_again();
+    void check_dark();
     void lose(const ProjectorProblem& problem);
 
     ProjectorKeeperSettings settings_;
@@ -72,6 +75,7 @@ private:
     std::atomic<Instant::rep> window_at_, session_at_;
     mutable std::mutex mutex_;
     std::unique_ptr<ProjectorProcess> projector_;
+    std::unique_ptr<DarkWatch> dark_watch_;
     std::string monitor_;  ///< its name
     ProjectorProblem problem_;
     std::function<bool()> permitted_;

@@ -1,7 +1,8 @@
 // A projector that is lost on an ordinary desktop, which is not black: its picture must not lie on the patient instead.
 // Run by two_monitors.sh: `keep_projector FOLDER`, with PLANLIGHT the program (for its projector process). The desktop
 // is made white; then the projector process is killed, another window lies before the light, the monitor is turned, and
-// the operator's monitor is taken away. Exit code 0 when nothing white was seen for longer than 200 ms.
+// the operator's monitor is taken away. With the compositor picom as MANAGER, of the process MANAGER_PROCESS, that is
+// made to hang as well, while the light is on. Exit code 0 when nothing white was seen for longer than 200 ms.
 #include <X11/Xatom.h>
 #include <X11/Xlib.h>
 #include <fmt/format.h>
@@ -13,7 +14,9 @@
 #include "app/live/projector_keeper.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
+#include "projection/projector_output.h"
 #include "projection/projector_window.h"
+#include "projection/x11_pointers.h"
 #include "root_window.h"
 #include "screen_pixel.h"
 
@@ -194,12 +197,60 @@ void lose_it(const Monitor& operators, const Monitor& projectors) {
     expect(!alone.empty(), "light that nobody watches over goes out: " + alone);
 }
 
+/// By the tables of the monitor's graphics output.
+bool black_by_gamma(const Monitor& monitor) {
+    const X11Display display(XOpenDisplay(nullptr));
+    const auto output = projector_output(display.get(), monitor.name);
+    if (!output) return false;
+    const X11Pointer<XRRScreenResources, XRRFreeScreenResources> resources(
+        XRRGetScreenResourcesCurrent(display.get(), DefaultRootWindow(display.get())));
+    const X11Pointer<XRROutputInfo, XRRFreeOutputInfo> info(
+        XRRGetOutputInfo(display.get(), resources.get(), output->outputs.at(0)));
+    const X11Pointer<XRRCrtcGamma, XRRFreeGamma> gamma(XRRGetCrtcGamma(display.get(), info->crtc));
+    const auto last = static_cast<std::size_t>(gamma->size) - 1;
+    return gamma->red[last] == 0 && gamma->green[last] == 0 && gamma->blue[last] == 0;
+}
+
+/// How long until `fact`; five seconds where it does not come.
+template <class Fact>
+Instant time_until(const Fact& fact) {
+    const SteadyClock clock;
+    const Instant start = clock.now();
+    while (!fact() && clock.now() - start < 5s) std::this_thread::sleep_for(2ms);
+    return clock.now() - start;
+}
+
+/// What it drew last stays on the monitor, whatever the windows show.
+void hang_compositor(pid_t compositor, const Monitor& projectors) {
+    const test::ScreenPixel eye(projectors);
+    Kept kept;
+    expect(kept.light() && eye.shows_soon(kGreen) && !black_by_gamma(projectors), "lit, through a compositor");
+    kill(compositor, SIGSTOP);
+    kept.keeper().go_dark();
+    const Instant dark = time_until([&] { return black_by_gamma(projectors); });
+    expect(dark <= 400ms, fmt::format("the compositor hangs: black by gamma {:.0f} ms after the light was to go",
+                                      1e3 * seconds(dark)));
+    const std::string problem = kept.problem_within(1s);
+    expect(problem.find("still shows something") != std::string::npos, "and said: " + problem);
+    expect(!kept.keeper().problem().may_be_lit, "it is known to be dark");
+    watch(eye, 2s);
+    expect(black_by_gamma(projectors) && kept.keeper().starts() == 1, "and stays so while it hangs");
+    kill(compositor, SIGCONT);
+    const Instant back = time_until([&] { return !black_by_gamma(projectors); });
+    expect(back < 2s && !eye.lit(), "it goes on: what is beneath is black, and the gamma as it was");
+    expect(kept.light() && eye.shows_soon(kGreen), "lit again");
+    kept.keeper().go_dark();
+    expect(!watch(eye, 700ms).last && kept.keeper().problem().empty(), "dark as usual");
+}
+
 }  // namespace
 
 int main() {
     const WhiteDesktop desktop;
     try {
         const auto monitors = list_monitors();
+        if (std::string(std::getenv("MANAGER")) == "picom")
+            hang_compositor(std::atoi(std::getenv("MANAGER_PROCESS")), monitors.at(1));
         lose_it(monitors.at(0), monitors.at(1));
     } catch (const Error& error) {
         expect(false, std::string("thrown: ") + error.what() + "; " + error.remedy);

@@ -29,5 +29,5 @@ xrandr --addmode DUMMY1 $second && xrandr --output DUMMY1 --mode $second --right
 xrandr >/dev/null  # asks the driver again: only then does it call the second output connected
 if [ "$manager" = picom ]; then openbox >/dev/null 2>&1 & sleep 0.5; fi  # it ends with its display
 if [ "$manager" != none ]; then "$manager" >/dev/null 2>&1 & wm=$!; sleep 1; fi
-export LIBGL_ALWAYS_SOFTWARE=1
+export MANAGER=$manager MANAGER_PROCESS=$wm LIBGL_ALWAYS_SOFTWARE=1
 timeout ${PROGRAM_SECONDS:-120} "$program" "$folder"
