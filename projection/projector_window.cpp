@@ -231,7 +231,9 @@ struct ProjectorWindow::Parts {
         glfwHideWindow(window);
         glfwPollEvents();
         throw DeviceError("Projector window", problem,
-                          "Connect the projector, check the monitor arrangement, and open the projector again.");
+                          monitor.of_wayland()
+                              ? "Log in to a desktop of X11 (\"on Xorg\"): one of Wayland places windows as it likes."
+                              : "Connect the projector, check the monitor arrangement, and open the projector again.");
     }
 
     /// A window whose picture nobody draws any more is taken off the screen, for it could go on to show the last one.

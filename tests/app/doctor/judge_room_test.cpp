@@ -204,6 +204,9 @@ TEST(Doctor, ADesktopThatIsNotBlackOrIsDrawnByACompositorIsSaid) {
     monitor.desktop_lit = 0.01;
     EXPECT_EQ(about("desktop", judged(monitor)).health, Health::look);
     EXPECT_NE(about("desktop", judged(monitor)).said.find("falls on the patient"), std::string::npos);
+    monitor = good_monitor();
+    monitor.found->name = "XWAYLAND1";
+    EXPECT_EQ(about("desktop", judged(monitor)).health, Health::stop);
 }
 
 TEST(Doctor, TheProjectorIsTheOneThatWasCalibratedAndMeasured) {
