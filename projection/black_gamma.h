@@ -12,9 +12,8 @@ namespace planlight {
 /// hangs, or a window that nobody can draw in any more stays. One thread.
 class BlackGamma {
 public:
-    /// The connection must outlive it.
+    /// The connection must outlive it. What is black when it ends stays so.
     explicit BlackGamma(Display* connection) : connection_(connection) {}
-    ~BlackGamma() { restore(); }
     BlackGamma(const BlackGamma&) = delete;
     BlackGamma& operator=(const BlackGamma&) = delete;
 
@@ -24,7 +23,7 @@ public:
     void restore() noexcept;
     bool black() const { return !before_.empty(); }
 
-    /// Where a program that was killed left it black: the usual tables again.
+    /// Where a program that ended left it black: the usual tables again.
     void mend(const ProjectorOutput& output);
 
 private:

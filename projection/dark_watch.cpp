@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -70,7 +71,8 @@ struct DarkWatch::Parts {
         if (const auto output = projector_output(connection.get(), monitor)) gamma.mend(*output);
         Instant looked_at{};
         int lit_looks = 0, dark_looks = 0;
-        for (; !stop.stop_requested(); std::this_thread::sleep_for(kPoll)) {
+        std::optional<Instant::rep> judged;  // the darkness that the last verdict was of
+        for (; !stop.stop_requested() || judged != dark_from; std::this_thread::sleep_for(kPoll)) {
             if (!due(looked_at)) continue;
             const Instant::rep asked_of = dark_from;
             looked_at = clock.now();
@@ -81,14 +83,16 @@ struct DarkWatch::Parts {
             dark_looks = lit ? 0 : dark_looks + 1;
             if (lit_looks >= kLooks) state = gamma.blacken(*output) ? State::blackened : State::lit;
             if (dark_looks >= kLooks) gamma.restore(), state = State::as_it_should;
+            if (lit_looks >= kLooks || dark_looks > 0) judged = asked_of;
         }
-        gamma.restore();
         forget_errors_on(connection.get());
     }
 };
 
 DarkWatch::DarkWatch(std::string monitor) : parts_(std::make_unique<Parts>(std::move(monitor))) {}
-DarkWatch::~DarkWatch() = default;
+DarkWatch::~DarkWatch() {
+    expect_dark_by(parts_->clock.now());
+}
 
 void DarkWatch::expect_dark_from(Instant moment) {
     parts_->dark_from = moment.count();

@@ -23,7 +23,9 @@ public:
     };
 
     explicit DarkWatch(std::string monitor);
-    ~DarkWatch();  ///< its gamma is as it was before then
+    /// To be dark from now on at the latest; waits until it has looked, a quarter of a second say. What is still lit
+    /// then stays black, until the next one begins.
+    ~DarkWatch();
     DarkWatch(const DarkWatch&) = delete;
     DarkWatch& operator=(const DarkWatch&) = delete;
 

@@ -243,6 +243,18 @@ void hang_compositor(pid_t compositor, const Monitor& projectors) {
     expect(!watch(eye, 700ms).last && kept.keeper().problem().empty(), "dark as usual");
 }
 
+void end_while_compositor_hangs(pid_t compositor, const Monitor& projectors) {
+    {
+        Kept kept;
+        expect(kept.light() && test::ScreenPixel(projectors).shows_soon(kGreen), "lit once more");
+        kill(compositor, SIGSTOP);
+    }
+    expect(black_by_gamma(projectors), "the session ends while it hangs: the monitor stays black");
+    kill(compositor, SIGCONT);
+    const Kept next;
+    expect(time_until([&] { return !black_by_gamma(projectors); }) < 1s, "the next session gives its gamma back");
+}
+
 }  // namespace
 
 int main() {
@@ -250,7 +262,8 @@ int main() {
     try {
         const auto monitors = list_monitors();
         if (std::string(std::getenv("MANAGER")) == "picom")
-            hang_compositor(std::atoi(std::getenv("MANAGER_PROCESS")), monitors.at(1));
+            for (const auto& test : {hang_compositor, end_while_compositor_hangs})
+                test(std::atoi(std::getenv("MANAGER_PROCESS")), monitors.at(1));
         lose_it(monitors.at(0), monitors.at(1));
     } catch (const Error& error) {
         expect(false, std::string("thrown: ") + error.what() + "; " + error.remedy);
