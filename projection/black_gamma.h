@@ -9,7 +9,8 @@
 namespace planlight {
 
 /// Makes a monitor black by the gamma tables of its graphics output, which are the X server's: also where a compositor
-/// hangs, or a window that nobody can draw in any more stays. One thread.
+/// hangs, or a window that nobody can draw in any more stays. Whether the output obeys them nobody can tell: some
+/// (over USB, say) have none that count. One thread.
 class BlackGamma {
 public:
     /// The connection must outlive it. What is black when it ends stays so.
@@ -17,21 +18,29 @@ public:
     BlackGamma(const BlackGamma&) = delete;
     BlackGamma& operator=(const BlackGamma&) = delete;
 
-    /// False where the output has no such tables. It remembers what was there.
+    /// To be called at every look while it should be black: another program may have set a table of its own since, or
+    /// the monitor may be on another of the graphics card's outputs (then the one before gets its own back). False
+    /// where there are no tables, or they do not keep what is set.
     bool blacken(const ProjectorOutput& output);
     /// As it was before.
-    void restore() noexcept;
+    void restore();
     bool black() const { return !before_.empty(); }
 
-    /// Where a program that ended left it black: the usual tables again.
-    void mend(const ProjectorOutput& output);
+    /// Outputs that a program which ended left black: that one stays so, with the usual table as what it was before;
+    /// all others have the usual one again.
+    void take_over(const ProjectorOutput& output);
 
 private:
     struct Table {
         RRCrtc crtc = None;
         std::vector<unsigned short> red, green, blue;
+
+        bool all_zero() const;
+        Table all_of(double share_at_end) const;  ///< linear up to there
     };
-    std::vector<Table> tables_of(const ProjectorOutput& output) const;
+    std::vector<RRCrtc> crtcs_of(const ProjectorOutput& output) const;
+    std::vector<RRCrtc> all_crtcs() const;
+    std::vector<Table> tables_of(const std::vector<RRCrtc>& crtcs) const;
     void set(const Table& table) const;
 
     Display* connection_;

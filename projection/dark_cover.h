@@ -7,7 +7,7 @@ namespace planlight {
 
 /// A black window before a monitor whose projector window is gone: without it the desktop's own picture lies on the
 /// patient, while the program says that it is dark. X11; elsewhere nothing. It has a connection of its own; to be used
-/// from one thread.
+/// by one thread at a time.
 class DarkCover {
 public:
     explicit DarkCover(std::string monitor);

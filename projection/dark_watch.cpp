@@ -2,6 +2,7 @@
 
 #include <X11/Xutil.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -20,26 +21,35 @@ namespace {
 
 constexpr auto kPoll = std::chrono::milliseconds(10);
 constexpr Instant kToGoDark = std::chrono::milliseconds(200);  ///< expiry, and a compositor's next picture
-constexpr Instant kOften = std::chrono::milliseconds(30);      ///< between looks, as it has just become dark
-constexpr Instant kSeldom = std::chrono::milliseconds(2000);   ///< and later
-constexpr Instant kJustNow = std::chrono::milliseconds(1000);
+constexpr Instant kAgain = std::chrono::milliseconds(30);      ///< between looks, until one was black
+constexpr Instant kWhileBlack = std::chrono::milliseconds(150);
+constexpr Instant kSeldom = std::chrono::milliseconds(2000);  ///< a whole picture is read each time
+constexpr Instant kLongestEnd = std::chrono::milliseconds(1000);
 constexpr int kLooks = 2;  ///< one after the other, for a window may come and go
 constexpr int kLeastPixels = 20;
-constexpr std::uint32_t kBright = 0xE0E0E0;  ///< the bits of a channel of 32 or more
 
-/// Whether anything is lit there; false where the X server gives no picture.
-bool is_lit(Display* display, const ProjectorOutput& at) {
+/// Whether anything is lit there; empty where the X server does not tell.
+std::optional<bool> is_lit(Display* display, const ProjectorOutput& at) {
     XImage* const image = XGetImage(display, DefaultRootWindow(display), at.x, at.y, static_cast<unsigned>(at.width),
                                     static_cast<unsigned>(at.height), AllPlanes, ZPixmap);
-    if (image == nullptr) return false;
-    int lit = 0;
-    for (int y = 0; y < image->height && image->bits_per_pixel == 32 && lit < kLeastPixels; ++y) {
-        const auto* const row = reinterpret_cast<const std::uint32_t*>(image->data + static_cast<std::ptrdiff_t>(y) *
-                                                                                         image->bytes_per_line);
-        for (int x = 0; x < image->width; ++x) lit += (row[x] & kBright) != 0;
+    if (image == nullptr) return std::nullopt;
+    std::optional<bool> verdict;
+    if (image->bits_per_pixel == 32) {
+        std::uint32_t bright = 0;  // the three highest bits of each colour
+        for (const unsigned long mask : {image->red_mask, image->green_mask, image->blue_mask}) {
+            const auto bits = static_cast<std::uint32_t>(mask);
+            bright |= bits & ~(bits >> 3);
+        }
+        int lit = 0;
+        for (int y = 0; y < image->height && lit < kLeastPixels; ++y) {
+            const auto* const row = reinterpret_cast<const std::uint32_t*>(
+                image->data + static_cast<std::ptrdiff_t>(y) * image->bytes_per_line);
+            for (int x = 0; x < image->width; ++x) lit += (row[x] & bright) != 0;
+        }
+        verdict = lit >= kLeastPixels;
     }
     XDestroyImage(image);
-    return lit >= kLeastPixels;
+    return verdict;
 }
 
 }  // namespace
@@ -52,44 +62,61 @@ struct DarkWatch::Parts {
     std::jthread thread;
 
     explicit Parts(std::string name) : monitor(std::move(name)), dark_from(clock.now().count()) {
-        thread = std::jthread([this](const std::stop_token& stop) { run(stop); });
-    }
-
-    /// Black should be seen by now, and it is time to look.
-    bool due(Instant looked_at) const {
-        const Instant dark_for = clock.now() - Instant(dark_from.load());
-        if (dark_for < kToGoDark) return false;
-        const bool often = dark_for < kToGoDark + kJustNow || state != State::as_it_should;
-        return clock.now() - looked_at >= (often ? kOften : kSeldom);
-    }
-
-    void run(const std::stop_token& stop) {
-        const X11Display connection(XOpenDisplay(nullptr));
+        X11Display connection(XOpenDisplay(nullptr));
         if (!connection) return;
         forgive_errors_on(connection.get());
-        BlackGamma gamma(connection.get());
-        if (const auto output = projector_output(connection.get(), monitor)) gamma.mend(*output);
-        Instant looked_at{};
+        thread = std::jthread([this, c = std::move(connection)](const std::stop_token& stop) {
+            run(c.get(), stop);
+            forget_errors_on(c.get());
+        });
+    }
+
+    /// What was seen of one darkness.
+    struct Darkness {
+        Instant::rep from = 0;
         int lit_looks = 0, dark_looks = 0;
-        std::optional<Instant::rep> judged;  // the darkness that the last verdict was of
-        for (; !stop.stop_requested() || judged != dark_from; std::this_thread::sleep_for(kPoll)) {
-            if (!due(looked_at)) continue;
-            const Instant::rep asked_of = dark_from;
+
+        bool judged() const { return lit_looks >= kLooks || dark_looks > 0; }
+    };
+
+    bool due(const Darkness& seen, Instant looked_at) const {
+        const Instant now = clock.now();
+        if (now - Instant(dark_from.load()) < kToGoDark) return false;
+        const bool known = seen.from == dark_from && seen.dark_looks > 0;
+        return now - looked_at >= (state != State::as_it_should ? kWhileBlack : known ? kSeldom : kAgain);
+    }
+
+    void run(Display* display, const std::stop_token& stop) {
+        BlackGamma gamma(display);
+        if (const auto output = projector_output(display, monitor)) gamma.take_over(*output);
+        if (gamma.black()) state = State::blackened;
+        Darkness seen;
+        Instant looked_at{}, ends_at = Instant::max();
+        for (;; std::this_thread::sleep_for(kPoll)) {
+            if (stop.stop_requested()) {
+                ends_at = std::min(ends_at, clock.now() + kLongestEnd);
+                if (clock.now() >= ends_at || (seen.from == dark_from && seen.judged())) return;
+            }
+            if (!due(seen, looked_at)) continue;
+            const Instant::rep from = dark_from;
+            if (seen.from != from) seen = {from};
             looked_at = clock.now();
-            const auto output = projector_output(connection.get(), monitor);
-            const bool lit = output && is_lit(connection.get(), *output);
-            if (dark_from != asked_of) continue;  // a picture may have come meanwhile
-            lit_looks = lit ? lit_looks + 1 : 0;
-            dark_looks = lit ? 0 : dark_looks + 1;
-            if (lit_looks >= kLooks) state = gamma.blacken(*output) ? State::blackened : State::lit;
-            if (dark_looks >= kLooks) gamma.restore(), state = State::as_it_should;
-            if (lit_looks >= kLooks || dark_looks > 0) judged = asked_of;
+            forgive_errors_on(display);  // others set a handler of theirs
+            const auto output = projector_output(display, monitor);
+            const std::optional<bool> lit = output ? is_lit(display, *output) : std::nullopt;
+            if (!lit || dark_from != from) continue;  // not known; or a picture may have come meanwhile
+            seen.lit_looks = *lit ? seen.lit_looks + 1 : 0;
+            seen.dark_looks = *lit ? 0 : seen.dark_looks + 1;
+            if (*lit && (seen.lit_looks >= kLooks || gamma.black()))
+                state = gamma.blacken(*output) ? State::blackened : State::lit;
+            if (!*lit && gamma.black() && seen.dark_looks >= kLooks) gamma.restore();
+            if (!*lit && !gamma.black()) state = State::as_it_should;
         }
-        forget_errors_on(connection.get());
     }
 };
 
 DarkWatch::DarkWatch(std::string monitor) : parts_(std::make_unique<Parts>(std::move(monitor))) {}
+
 DarkWatch::~DarkWatch() {
     expect_dark_by(parts_->clock.now());
 }

@@ -9,22 +9,24 @@ namespace planlight {
 
 /// Looks, with a thread of its own, whether a monitor is black when it should be, as the X server has it: a compositor
 /// that hangs keeps the last picture there, whatever its window shows meanwhile, and a desktop may draw over all
-/// windows. What is still lit then is made black by the output's gamma (`BlackGamma`), until the picture beneath is
-/// black again.
+/// windows. Lit is a monitor with 20 pixels or more of an eighth of full light in any colour, in two looks one after
+/// the other. It is made black by the output's gamma (`BlackGamma`) until the picture beneath is black again.
 ///
 /// Where the X server gives no picture, or the monitor is not the projector's alone (`projector_output`), nothing is
-/// done. Moments are of the wall's monotonic clock. May be used from any thread.
+/// known: nothing is done then, and nothing undone. Moments are of the wall's monotonic clock. May be used from any
+/// thread.
 class DarkWatch {
 public:
     enum class State {
         as_it_should,
-        blackened,  ///< it was lit, and is black by its gamma
-        lit         ///< and nothing can be done about it
+        blackened,  ///< it was lit, and its gamma is black: dark where the output obeys that
+        lit         ///< and its gamma does not stay black
     };
 
+    /// A monitor that was left black by its gamma is blackened at first.
     explicit DarkWatch(std::string monitor);
-    /// To be dark from now on at the latest; waits until it has looked, a quarter of a second say. What is still lit
-    /// then stays black, until the next one begins.
+    /// To be dark from now on at the latest; waits until it has looked, a quarter of a second say, a second at most.
+    /// What is still lit then stays black, until the next one finds it dark.
     ~DarkWatch();
     DarkWatch(const DarkWatch&) = delete;
     DarkWatch& operator=(const DarkWatch&) = delete;

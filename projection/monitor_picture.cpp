@@ -63,4 +63,9 @@ bool desktop_is_composited() {
     return display && is_composited(display.get());
 }
 
+bool desktop_is_wayland() {
+    const X11Display display(XOpenDisplay(nullptr));
+    return display && is_wayland(display.get());
+}
+
 }  // namespace planlight

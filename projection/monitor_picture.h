@@ -29,4 +29,8 @@ private:
 /// is seen. False where there is no X display.
 bool desktop_is_composited();
 
+/// Whether it is a Wayland desktop, whose X server does not know what is seen of its windows; `ProjectorWindow` refuses
+/// it.
+bool desktop_is_wayland();
+
 }  // namespace planlight

@@ -65,16 +65,15 @@ std::vector<Place> lit_places(const RgbImage& picture) {
     return places;
 }
 
-/// What is in the window's buffer at a place, against what should be. Nothing is read from a lost context: the values
-/// that were there before are still there then, and no pixel has both of them.
+/// What is in the window's buffer at a place, against what should be. A read that fails leaves the values that were
+/// there before.
 bool reads_back(Place place, int height, const Rgb& expected) {
     constexpr int kRounding = 8;  // screens of 16 bits a pixel
-    for (const std::uint8_t before : {std::uint8_t{0x55}, std::uint8_t{0xAA}}) {
-        std::uint8_t read[4] = {before, before, before, before};
-        glReadPixels(place.x, height - 1 - place.y, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, read);
-        for (std::size_t channel = 0; channel < 3; ++channel)
-            if (std::abs(int{read[channel]} - int{expected[channel]}) > kRounding) return false;
-    }
+    std::uint8_t read[4] = {};
+    for (std::size_t channel = 0; channel < 3; ++channel) read[channel] = static_cast<std::uint8_t>(~expected[channel]);
+    glReadPixels(place.x, height - 1 - place.y, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, read);
+    for (std::size_t channel = 0; channel < 3; ++channel)
+        if (std::abs(int{read[channel]} - int{expected[channel]}) > kRounding) return false;
     return true;
 }
 
@@ -118,10 +117,11 @@ struct PictureThread::Painter {
         glfwGetError(nullptr);  // what was complained of before
         bool drawn = false;
         for (int attempt = 0; attempt < kAttempts && !drawn; ++attempt) {
+            const bool answers = !read_back || draws_a_canary();
             put(picture);
             const GLenum error = glGetError();
             if (error != GL_NO_ERROR) glClear(GL_COLOR_BUFFER_BIT);  // black first, then the report
-            drawn = error == GL_NO_ERROR && (!read_back || is_in_buffer(picture));
+            drawn = error == GL_NO_ERROR && answers && (!read_back || is_in_buffer(picture));
             glfwSwapBuffers(window);
             glFinish();
             if (error != GL_NO_ERROR)
@@ -132,6 +132,17 @@ struct PictureThread::Painter {
         const char* complaint = nullptr;
         if (glfwGetError(&complaint) != GLFW_NO_ERROR)
             throw std::runtime_error(std::string("its picture was not shown: ") + complaint);
+    }
+
+    /// A colour that was not there before, into the buffer that is not seen yet: black that is read back could be that
+    /// of a read that never came.
+    bool draws_a_canary() {
+        canary = static_cast<std::uint8_t>(canary > 200 ? 60 : canary + 20);
+        const Rgb colour{canary, static_cast<std::uint8_t>(255 - canary), 90};
+        glClearColor(static_cast<float>(colour[0]) / 255, static_cast<float>(colour[1]) / 255,
+                     static_cast<float>(colour[2]) / 255, 1);
+        glClear(GL_COLOR_BUFFER_BIT);
+        return reads_back({width / 2, height / 2}, height, colour);
     }
 
     void put(const RgbImage& picture) const {
@@ -163,6 +174,7 @@ struct PictureThread::Painter {
 
     GLFWwindow* window;
     int width, height;
+    std::uint8_t canary = 0;
     std::vector<Place> lit_before;  ///< of the picture that was drawn last
     GLuint vertices = 0, texture = 0, program = 0;
 };
@@ -238,11 +250,9 @@ void PictureThread::redraw() {
     wanted_changed_.notify_all();
 }
 
-void PictureThread::read_back() {
+void PictureThread::read_back(bool wanted) {
     const std::lock_guard lock(mutex_);
-    read_back_ = true;
-    ++wanted_;
-    wanted_changed_.notify_all();
+    read_back_ = wanted;
 }
 
 bool PictureThread::dark() const {

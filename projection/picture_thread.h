@@ -37,9 +37,9 @@ public:
     void check();
     /// Draws again what should be seen (the window system lost it).
     void redraw();
-    /// From now on what is drawn is read back, beginning with a redraw: for a window that is seen and stays where it is
-    /// (of another the buffer need not hold anything).
-    void read_back();
+    /// Whether what is drawn is read back, from the next redraw on: for a window that is seen, stays where it is and
+    /// has no other before it (of others the buffer need not hold anything). At first it is not.
+    void read_back(bool wanted);
     bool dark() const;
 
 private:

@@ -13,6 +13,7 @@
 #include "projection/edid.h"
 #include "projection/glfw_session.h"
 #include "projection/monitor_lock.h"
+#include "projection/monitor_picture.h"
 #include "projection/monitors_kept_on.h"
 #include "projection/output_turn.h"
 #include "projection/picture_thread.h"
@@ -23,6 +24,7 @@ namespace planlight {
 namespace {
 
 constexpr auto kLandingPatience = std::chrono::milliseconds(1500);
+const char* const kUseX11 = "Log in to one of X11 (\"on Xorg\"), best without a compositor (openbox).";
 constexpr auto kTurnLooks = std::chrono::milliseconds(100);     ///< how often the output is asked how it is turned
 constexpr auto kAboveAllowed = std::chrono::milliseconds(120);  ///< for another window to be before ours
 constexpr auto kSettled =
@@ -139,6 +141,9 @@ struct ProjectorWindow::Parts {
     Parts(const std::string& wanted, const Clock& c, bool allow_only_monitor, const ProjectorWindowSettings& s)
         : settings(s), clock(c), only_monitor_allowed(allow_only_monitor) {
         glfwPollEvents();
+        if (desktop_is_wayland())
+            throw DeviceError("Projector window",
+                              "this is a Wayland desktop: what covers the light, or keeps it, cannot be seen", kUseX11);
         const std::vector<GLFWmonitor*> handles = monitors_now();
         const std::size_t index = choose(list_monitors(), wanted, allow_only_monitor);
         handle = handles.at(index);
@@ -199,7 +204,8 @@ struct ProjectorWindow::Parts {
                 refuse(problem.empty() ? "the window does not stay on its monitor" : problem);
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
-        picture->read_back();
+        picture->read_back(true);
+        picture->redraw();
     }
 
     /// Why the window does not cover exactly its monitor; empty when it does.
@@ -231,9 +237,7 @@ struct ProjectorWindow::Parts {
         glfwHideWindow(window);
         glfwPollEvents();
         throw DeviceError("Projector window", problem,
-                          monitor.of_wayland()
-                              ? "Log in to a desktop of X11 (\"on Xorg\"): one of Wayland places windows as it likes."
-                              : "Connect the projector, check the monitor arrangement, and open the projector again.");
+                          "Connect the projector, check the monitor arrangement, and open the projector again.");
     }
 
     /// A window whose picture nobody draws any more is taken off the screen, for it could go on to show the last one.
@@ -264,7 +268,9 @@ struct ProjectorWindow::Parts {
     /// What can be raised over is no fault.
     void check_nothing_above() {
         const auto now = std::chrono::steady_clock::now();
-        if (!above->look()) {
+        const bool is_above = above->look();
+        picture->read_back(!is_above);
+        if (!is_above) {
             above_since.reset();
         } else if (!above_since) {
             above_since = now;

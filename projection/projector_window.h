@@ -15,10 +15,6 @@ struct Monitor {
     bool primary = false;
     double refresh_hz = 0;      ///< 0: not known
     std::string model, serial;  ///< of its EDID, where X11 tells one; else empty
-
-    /// As XWayland names its outputs, to which X11 programs of a Wayland desktop are shown. Windows need not stay there
-    /// where they are put, and nobody tells what is seen of them.
-    bool of_wayland() const { return name.starts_with("XWAYLAND"); }
 };
 
 /// The monitors there are now. Throws DeviceError when there is no display at all.

@@ -42,25 +42,33 @@ Family family_of(Display* display, ::Window window) {
     return family;
 }
 
-/// Whether that child of the root is seen and takes the mouse in a part of the rectangle. What lets the mouse through
-/// there is no window of a person's: a compositor draws all others into one of that kind.
-bool covers(Display* display, ::Window window, const Rectangle& wanted) {
-    XWindowAttributes a;
-    if (XGetWindowAttributes(display, window, &a) == 0 || a.map_state != IsViewable || a.c_class != InputOutput)
-        return false;
-    const Rectangle whole{a.x, a.y, a.width + 2 * a.border_width, a.height + 2 * a.border_width};
-    if (!whole.meets(wanted)) return false;
+/// Of a window, its bounding or input shape, in the root's frame.
+bool shape_meets(Display* display, ::Window window, int kind, int x, int y, const Rectangle& wanted) {
     int count = 0, order = 0;
-    const X11Pointer<XRectangle, XFree> list(XShapeGetRectangles(display, window, ShapeInput, &count, &order));
+    const X11Pointer<XRectangle, XFree> list(XShapeGetRectangles(display, window, kind, &count, &order));
     const std::span parts(list.get(), static_cast<std::size_t>(count));
     return std::any_of(parts.begin(), parts.end(), [&](const XRectangle& part) {
-        return Rectangle{a.x + a.border_width + part.x, a.y + a.border_width + part.y, part.width, part.height}.meets(
-            wanted);
+        return Rectangle{x + part.x, y + part.y, part.width, part.height}.meets(wanted);
     });
+}
+
+/// Whether that child of the root is seen in a part of the rectangle. One over the whole root is what a compositor
+/// draws all others into: of that one only what takes the mouse counts, a desktop's own bars.
+bool covers(Display* display, ::Window window, const Rectangle& wanted) {
+    XWindowAttributes a, root;
+    if (XGetWindowAttributes(display, window, &a) == 0 || a.map_state != IsViewable || a.c_class != InputOutput)
+        return false;
+    if (XGetWindowAttributes(display, DefaultRootWindow(display), &root) == 0) return false;
+    const Rectangle whole{a.x, a.y, a.width + 2 * a.border_width, a.height + 2 * a.border_width};
+    if (!whole.meets(wanted)) return false;
+    const bool over_all = a.x == 0 && a.y == 0 && a.width == root.width && a.height == root.height;
+    return shape_meets(display, window, over_all ? ShapeInput : ShapeBounding, a.x + a.border_width,
+                       a.y + a.border_width, wanted);
 }
 
 /// Whether, by the order of the root's children, a window lies before a part of this one.
 bool is_below_another(Display* display, ::Window window) {
+    forgive_errors_on(display);  // others set a handler of theirs
     const ::Window root = DefaultRootWindow(display);
     XWindowAttributes own;
     int x = 0, y = 0;

@@ -12,7 +12,6 @@ struct Forgiven {
     std::mutex mutex;
     std::set<Display*> connections;
     XErrorHandler before = nullptr;
-    bool installed = false;
 };
 
 Forgiven& forgiven() {
@@ -32,8 +31,8 @@ void forgive_errors_on(Display* connection) {
     Forgiven& all = forgiven();
     const std::lock_guard lock(all.mutex);
     all.connections.insert(connection);
-    if (!all.installed) all.before = XSetErrorHandler(take_error);
-    all.installed = true;
+    const XErrorHandler now = XSetErrorHandler(take_error);
+    if (now != take_error) all.before = now;
 }
 
 void forget_errors_on(Display* connection) {

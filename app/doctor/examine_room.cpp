@@ -159,6 +159,7 @@ private:
             } catch (const DeviceError&) {  // it cannot be read: what is asked of the monitor goes on
             }
             figures.composited = desktop_is_composited();
+            figures.wayland = desktop_is_wayland();
         }
         monitor_ = figures;
         if (!room_.projector_file.empty()) monitor_->measured = read_projector_file(room_.projector_file);

@@ -237,7 +237,7 @@ DoctorLine judge_identity(const Monitor& m, const ProjectorFacts& measured) {
 /// What Planlight's window covers while it is there, and who draws it.
 DoctorLine judge_desktop(const MonitorFigures& monitor) {
     constexpr double kSome = 0.001;
-    if (monitor.found && monitor.found->of_wayland())
+    if (monitor.wayland)
         return line("projector, desktop", Health::stop,
                     "this is a Wayland desktop: what covers the light, or keeps it, cannot be seen",
                     "Log in to one of X11 (\"on Xorg\"), best without a compositor (openbox).");

@@ -96,6 +96,7 @@ struct MonitorFigures {
     /// How much of the monitor the desktop lights by itself, before any window of ours; empty: not known.
     std::optional<double> desktop_lit;
     bool composited = false;  ///< a compositor draws the desktop's windows
+    bool wayland = false;
 };
 
 std::vector<DoctorLine> judge_monitor(const MonitorFigures& monitor, const CameraModel& calibrated_projector);

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "planning_io/types/error.h"
-#include "projection/dark_cover.h"
 
 namespace planlight {
 namespace {
@@ -25,7 +24,8 @@ ProjectorKeeper::ProjectorKeeper(const std::string& monitor, const ProjectorKeep
       window_at_(clock_.now().count()),
       session_at_(clock_.now().count()),
       projector_(std::make_unique<ProjectorProcess>(monitor, settings.process)),
-      dark_watch_(std::make_unique<DarkWatch>(projector_->monitor())),
+      cover_(projector_->monitor()),
+      dark_watch_(projector_->monitor()),
       monitor_(projector_->monitor()),
       width_(projector_->width()),
       height_(projector_->height()),
@@ -42,17 +42,18 @@ Instant ProjectorKeeper::show(const RgbImage& picture, Instant valid_until) {
     std::unique_lock lock(mutex_);
     if (!projector_) throw DeviceError("Projector", problem_.what, problem_.remedy);
     if (!window_alive()) {
+        dark_watch_.expect_dark_by(clock_.now());
         projector_->go_dark();
         throw DeviceError("Projector", "the operator's window does not answer, and nothing may be lit meanwhile",
                           "End what else uses the computer.");
     }
     try {
         if (permitted_ && !permitted_()) {
+            dark_watch_.expect_dark_by(clock_.now());
             projector_->go_dark();
-            dark_watch_->expect_dark_by(clock_.now());
             return clock_.now();
         }
-        dark_watch_->expect_dark_from(valid_until);
+        dark_watch_.expect_dark_from(valid_until);
         projector_->renew();  // a picture that comes before the lease, or right after darkness, would be lost
         return projector_->show(picture, valid_until);
     } catch (const Error& error) {
@@ -69,8 +70,8 @@ void ProjectorKeeper::set_permission(std::function<bool()> permitted) {
 
 void ProjectorKeeper::go_dark() noexcept {
     const std::lock_guard lock(mutex_);
+    dark_watch_.expect_dark_by(clock_.now());
     if (projector_) projector_->go_dark();
-    dark_watch_->expect_dark_by(clock_.now());
 }
 
 void ProjectorKeeper::disturb(int signal) noexcept {
@@ -115,27 +116,36 @@ void ProjectorKeeper::start_again() {
 }
 
 void ProjectorKeeper::lose(const ProjectorProblem& problem) {
+    dark_watch_.expect_dark_by(clock_.now());
     const std::lock_guard lock(mutex_);
     projector_.reset();
+    cover_.cover();
     problem_ = problem;
     lost_at_ = clock_.now();
-    dark_watch_->expect_dark_by(lost_at_);
 }
 
 /// One that is lit though it should be dark is lost, and stays so until it is not.
 void ProjectorKeeper::check_dark() {
-    const DarkWatch::State state = dark_watch_->state();
+    const DarkWatch::State state = dark_watch_.state();
     if (state == DarkWatch::State::as_it_should) return;
-    const bool lit = state == DarkWatch::State::lit;
-    lose({"its monitor was to be dark, and the desktop still shows something there",
-          lit ? "Cover the lens, or switch the projector off. Log in to a desktop without a compositor."
-              : "It was made black by its gamma. Log in to a desktop without a compositor (openbox).",
-          lit});
+    const ProjectorProblem problem{
+        "its monitor was to be dark, and the desktop still shows something there",
+        state == DarkWatch::State::lit
+            ? "Cover the lens, or switch the projector off. Log in to a desktop without a compositor."
+            : "Its gamma was made black. Where light is seen: cover the lens. Use a desktop without a compositor.",
+        true};
+    std::unique_lock lock(mutex_);
+    if (!projector_ && problem_.what == problem.what) {
+        problem_ = problem;
+        lost_at_ = clock_.now();
+        return;
+    }
+    lock.unlock();
+    lose(problem);
 }
 
 void ProjectorKeeper::run(const std::stop_token& stop) {
     constexpr Instant kFollow = std::chrono::milliseconds(250);
-    DarkCover cover(monitor_);
     std::optional<Instant> covered_at;
     while (!stop.stop_requested()) {
         try {
@@ -144,13 +154,17 @@ void ProjectorKeeper::run(const std::stop_token& stop) {
             const Instant lost_at = lost_at_;
             if (!lost) {
                 projector_->check();
-                if (alive()) projector_->renew();
+                if (alive())
+                    projector_->renew();
+                else
+                    dark_watch_.expect_dark_by(clock_.now() + settings_.process.lease);
             }
+            if (lost && (!covered_at || clock_.now() - *covered_at > kFollow))
+                cover_.cover(), covered_at = clock_.now();
+            if (!lost && covered_at) cover_.uncover(), covered_at.reset();
             lock.unlock();
             check_dark();
-            if (lost && (!covered_at || clock_.now() - *covered_at > kFollow)) cover.cover(), covered_at = clock_.now();
             if (lost && clock_.now() - lost_at > settings_.retry_after) start_again();  // beneath the cover
-            if (!lost && covered_at) cover.uncover(), covered_at.reset();
         } catch (const Error& error) {
             lose(problem_of(error));
         } catch (const std::exception& error) {

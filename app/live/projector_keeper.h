@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "planning_io/types/steady_clock.h"
+#include "projection/dark_cover.h"
 #include "projection/dark_watch.h"
 #include "projection/projector_process.h"
 
@@ -75,7 +76,8 @@ private:
     std::atomic<Instant::rep> window_at_, session_at_;
     mutable std::mutex mutex_;
     std::unique_ptr<ProjectorProcess> projector_;
-    std::unique_ptr<DarkWatch> dark_watch_;
+    DarkCover cover_;  ///< outlives the last look at what is dark
+    DarkWatch dark_watch_;
     std::string monitor_;  ///< its name
     ProjectorProblem problem_;
     std::function<bool()> permitted_;

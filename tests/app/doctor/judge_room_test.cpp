@@ -205,7 +205,7 @@ TEST(Doctor, ADesktopThatIsNotBlackOrIsDrawnByACompositorIsSaid) {
     EXPECT_EQ(about("desktop", judged(monitor)).health, Health::look);
     EXPECT_NE(about("desktop", judged(monitor)).said.find("falls on the patient"), std::string::npos);
     monitor = good_monitor();
-    monitor.found->name = "XWAYLAND1";
+    monitor.wayland = true;
     EXPECT_EQ(about("desktop", judged(monitor)).health, Health::stop);
 }
 

@@ -156,6 +156,7 @@ struct DriverFault {
     bool fails_before = false;    ///< the driver fails all that time, and the picture expires at its end
     int signal = 0;               ///< to the program at the fault; 0: none
     Instant longest;
+    const char* reads = "READS_NOTHING";  ///< or zeros: what the driver says is in its buffer
 };
 constexpr const char *kHang = "HANG_WHEN", *kLost = "LOSE_CONTEXT_WHEN";
 constexpr const char *kExpiry = "EXPIRES_MS", *kPictures = "PICTURES_EVERY_MS";
@@ -166,6 +167,7 @@ constexpr DriverFault kDriverFaults[] = {
     {"the same, and the program is stopped", kHang, kPictures, "33", 200ms, false, SIGSTOP, 650ms},
     {"the graphics driver draws nothing as a picture expires", kLost, kExpiry, "600", 600ms, true, 0, kLongest},
     {"the graphics driver draws nothing between two pictures", kLost, kPictures, "33", 200ms, false, 0, kLongest},
+    {"the same, and what is read back is black", kLost, kExpiry, "600", 600ms, true, 0, kLongest, "READS_ZERO"},
 };
 
 void watch_faulty_driver(const char* self, const Monitor& monitor, int rounds, const std::string& folder) {
@@ -175,6 +177,7 @@ void watch_faulty_driver(const char* self, const Monitor& monitor, int rounds, c
     for (const DriverFault& fault : kDriverFaults) {
         setenv(fault.setting, fault.value, 1);
         setenv(fault.kind, file.c_str(), 1);
+        setenv(fault.reads, "1", 1);
         Instant worst{};
         int never = 0;
         for (int round = 0; round < rounds; ++round) {
@@ -195,7 +198,7 @@ void watch_faulty_driver(const char* self, const Monitor& monitor, int rounds, c
         expect(never == 0 && worst <= fault.longest,
                fmt::format("{}: dark after {:.0f} ms (worst of {}), never {} times", fault.name, 1000 * seconds(worst),
                            rounds, never));
-        for (const char* name : {fault.setting, fault.kind}) unsetenv(name);
+        for (const char* name : {fault.setting, fault.kind, fault.reads}) unsetenv(name);
     }
     unlink(file.c_str());
     unsetenv("LD_PRELOAD");
