@@ -35,9 +35,14 @@ void compare_skin(const PointCloud& cloud, const Case& the_case, const Registrat
     const bool far = match.skin.known() && check.on_skin >= kLeastAmongCloth &&
                      check.residual_mm > match.residual_median_mm + max_more_residual_mm;
     const bool tells = check.bound_mm <= stop_mm || check.bound_mm < check.off_mm;
-    check.elsewhere = check.off_mm > stop_mm ? !tells : far;
-    check.known = tells && !check.elsewhere && std::isfinite(check.off_mm);
+    // What was laid on the skin since the match, drapes say, does not make the skin lie elsewhere: it lies outside of
+    // it only, and leaves a part of it as it was.
+    constexpr double kLeftFree = 0.25, kNoneInside = 0.03;
+    const bool laid_on = far && !among_cloth && again.near_share >= kLeftFree && again.inside_share <= kNoneInside;
+    check.elsewhere = !laid_on && (check.off_mm > stop_mm ? !tells : far);
+    check.known = tells && !check.elsewhere && !laid_on && std::isfinite(check.off_mm);
     if (check.known) check.why_not.clear();
+    if (laid_on) check.why_not = "cloth or something else lies on the skin that the match was made on";
     if (check.elsewhere) check.why_not = "the skin does not lie where the markers put it";
     if (!check.known) check.off_mm = 0;
 }

@@ -87,6 +87,7 @@ struct LightCheck {
     /// The brightest tenth of the segments than the skin beside them, as a share of that: 1 is twice as bright as the
     /// skin, 0 that nothing was seen. Dim items do not count against it.
     double brighter = 0;
+    double fainter = 0;  ///< the same of the faintest fifth: a lamp's spot may lie on a part of the plan
     /// True where the segments that were seen tell the light's place in two directions along the skin. Straight lines
     /// side by side do not: along itself such light could lie anywhere.
     bool told_whole = false;

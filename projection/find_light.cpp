@@ -97,12 +97,22 @@ std::vector<double> response_of_ridge(double off_mm, double sigma_mm, std::size_
     return matched(ridge, sigma_mm);
 }
 
+/// Ink on the skin, or a hair: what the filter makes of a dark line has a bright one on either side that is not there.
+bool beside_a_darker_line(const std::vector<double>& response, std::size_t at) {
+    constexpr double kBeside_mm = 2;
+    const auto reach = static_cast<std::size_t>(kBeside_mm / kStep_mm);
+    const auto first = response.begin() + static_cast<std::ptrdiff_t>(at - std::min(at, reach));
+    const auto last = response.begin() + static_cast<std::ptrdiff_t>(std::min(response.size(), at + reach + 1));
+    return -*std::min_element(first, last) > response[at];
+}
+
 /// The highest place of the response, and how much of the response one ridge there leaves unexplained: its noise.
 std::optional<FoundLight> top_of(const std::vector<double>& response, double sigma_mm,
                                  const CheckLightSettings& settings) {
     const auto top = std::max_element(response.begin(), response.end());
     const auto at = static_cast<std::size_t>(top - response.begin());
     if (at == 0 || at + 1 == response.size()) return std::nullopt;
+    if (beside_a_darker_line(response, at)) return std::nullopt;
     const double before = response[at - 1], after = response[at + 1];
     const double bend = before - 2 * *top + after;
     const double part = bend < 0 ? std::clamp((before - after) / (2 * bend), -0.5, 0.5) : 0;

@@ -8,6 +8,7 @@ namespace planlight {
 struct LightBrightnessSettings {
     double most_brighter = 4;     ///< lines this many times as bright again as the skin beside them are dimmed
     double least_brighter = 2.5;  ///< and below this have their light back
+    double least_fainter = 1;     ///< lines are dimmed only where their faintest fifth is this much brighter, too
     double least_grey = 60;       ///< of 255, above the skin, to a camera: lines that are fainter are not dimmed
     double least = 0.3;           ///< share of the projector's light that is always kept
     double step = 0.05;           ///< the most that one look at the light changes it, as a share of itself

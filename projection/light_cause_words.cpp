@@ -18,11 +18,11 @@ std::string LightCause::headline() const {
         case LightFault::marker_slipped:
             return "a marker has slipped.";
         case LightFault::markers_moved:
-            return "the markers have moved on the patient.";
+            return "the skin is not where the markers put it.";
         case LightFault::no_picture:
             return "no light of the plan is seen.";
         case LightFault::other_picture:
-            return "the projector shows another picture.";
+            return "another picture or a lamp outshines the light.";
         case LightFault::partly_covered:
             return "a part of the light is covered.";
         case LightFault::light_off:
@@ -49,13 +49,13 @@ std::string LightCause::sentence() const {
             return fmt::format("Marker {} has slipped by {:.1f} mm; the patient is followed without it.", marker + 1,
                                size);
         case LightFault::markers_moved:
-            return fmt::format("The markers have moved on the patient: the skin lies {:.1f} mm off where they put it.",
+            return fmt::format("The skin lies {:.1f} mm off where the markers put it: it rose or sank, or they moved.",
                                size);
         case LightFault::no_picture:
             return "No light of the plan is seen: the projector shows no picture, something is before its lens, or the "
                    "room's lamps outshine it.";
         case LightFault::other_picture:
-            return "The projector shows something else: another window lies before the plan, or another picture.";
+            return "It became brighter beside the lines: a lamp, or another window or picture before the plan.";
         case LightFault::partly_covered:
             return fmt::format("Only {:.0f} % of the light is seen: something is before the projector or a camera.",
                                100 * size);
@@ -79,11 +79,11 @@ std::string LightCause::remedy() const {
         case LightFault::marker_slipped:
             return "Paste it again, and scan anew when there is time.";
         case LightFault::markers_moved:
-            return "Press \"Check skin\", fix the markers, and scan again.";
+            return "Press \"Check skin\": it tells which. Then fix the markers, or scan the changed skin anew.";
         case LightFault::no_picture:
             return "Look whether the projector is on and its lens free, and turn the room's lamps down.";
         case LightFault::other_picture:
-            return "Close whatever lies on the projector's monitor.";
+            return "Turn the lamp away, or close whatever lies on the projector's monitor.";
         case LightFault::partly_covered:
             return "Take it away, or look at the light where it is seen only.";
         case LightFault::light_off:

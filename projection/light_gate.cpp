@@ -110,7 +110,7 @@ void LightGate::take(Instant at, const LightCheck& check) {
     if (check.told_whole) told_whole_at_ = at;
     constexpr double kSlow = 0.1;
     if (check.seen >= settings_.least_seen) {
-        brighter_ = brighter_ > 0 ? (1 - kSlow) * brighter_ + kSlow * check.brighter : check.brighter;
+        brighter_ = brighter_ > 0 ? (1 - kSlow) * brighter_ + kSlow * check.fainter : check.fainter;
         constexpr double kBack = 1.2;  // what is warned of once is so until it is clearly no more
         faint_ = brighter_ > 0 && brighter_ < settings_.least_brighter * (faint_ ? kBack : 1);
     }
@@ -118,7 +118,7 @@ void LightGate::take(Instant at, const LightCheck& check) {
     for (std::size_t i = 0; i < items_.size(); ++i) take(at, check.items[i], items_[i]);
     const bool measured = check.seen >= settings_.least_seen && check.seen_share() >= settings_.least_seen_share;
     const bool beyond_search = check.far_mm && *check.far_mm > settings_.stop_mm;
-    const bool far = beyond_search || (check.seen >= settings_.least_seen && check.most_mm > settings_.stop_mm);
+    const bool far = beyond_search || (measured && check.most_mm > settings_.stop_mm);
     bad_ = far ? bad_ + 1 : 0;
     good_ = measured && check.off_mm <= settings_.warn_mm ? good_ + 1 : 0;
     if (bad_ < settings_.dark_after) return;
@@ -165,7 +165,7 @@ bool LightGate::rule_on_item(const Item& item, Ruling& ruling) const {
             2 * all.steep > all.lit
                 ? "Its light meets the skin too flat to be measured: look yourself, or turn the head."
             : 2 * all.asked >= all.lit && all.lit > 0
-                ? "Its light is too faint for the cameras, or something is before it: look yourself."
+                ? "Its light is too faint, or ink or something else lies there: look at it yourself."
                 : "The cameras do not see its light, or not apart from other light: look at it yourself."};
         return true;
     }
@@ -187,6 +187,13 @@ bool LightGate::rule_on_item(const Item& item, Ruling& ruling) const {
         ruling.headline = fmt::format("LOOK: \"{}\" is measured in part only.", item.name);
         ruling.details = {fmt::format("The cameras can see about {:.0f} % of its light: look at the rest yourself.",
                                       10 * std::round(10. * all.asked / all.lit))};
+        return true;
+    }
+    if (!item.dim && all.seen < settings_.least_seen_of_asked * all.asked) {
+        ruling.found_wrong = false;
+        ruling.headline = fmt::format("LOOK: \"{}\" is measured in part only.", item.name);
+        ruling.details = {fmt::format("About {:.0f} % of its light are not found in their place: look there yourself.",
+                                      10 * std::round(10. * (all.asked - all.seen) / all.asked))};
         return true;
     }
     return false;

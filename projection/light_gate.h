@@ -16,11 +16,12 @@ struct LightGateSettings {
     double least_seen_share = 0.5;     ///< of the stretches that the cameras should see
     double least_seen_of_item = 0.3;   ///< of the stretches of each item, over the looks of the last `fresh`
     double least_asked_of_item = 0.5;  ///< of the stretches of each item that are lit: else it is measured in part only
+    double least_seen_of_asked = 0.7;  ///< and of those that the cameras should see
     int least_seen = 5;                ///< stretches: fewer are no measurement
     int green_after = 3;               ///< good measurements in a row, of all the light and of each item
     int dark_after = 2;                ///< bad ones in a row
     double warn_unnoticed_mm = 3;      ///< so far a marker that slips by 1 mm may move the plan before it shows
-    double least_brighter = 0.3;  ///< the lines than the skin beside them, as a share of it; fainter ones are warned of
+    double least_brighter = 0.3;       ///< the fainter lines than the skin beside them; what is below is warned of
     Instant fresh = std::chrono::seconds(1);         ///< an older measurement is none
     Instant verified_for = std::chrono::minutes(5);  ///< of light that was interrupted; then a person looks again
 };
@@ -107,7 +108,7 @@ private:
     LightGateSettings settings_;
     bool verified_ = false, stopped_ = false, lit_ = false;
     int good_ = 0, bad_ = 0;
-    double brighter_ = 0;       ///< the lines than the skin beside them, mean of the last checks; 0: not known
+    double brighter_ = 0;       ///< `LightCheck::fainter`, mean of the last checks; 0: not known
     bool faint_ = false;        ///< by that
     int weak_ = 0;              ///< poses running that a slip may move too far unnoticed
     double unnoticed_mm_ = 0;   ///< by the last of them

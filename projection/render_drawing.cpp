@@ -45,10 +45,13 @@ struct DrawingRenderer::Parts {
         : skin(s), projector(p), depth(s.mesh()), raster(p.width, p.height) {}
 
     void light_points(const Stroke& stroke, const RenderSettings& settings, PointCounts& counts);
+    /// Of points that are lit, those that a marker's disc darkens afterwards.
+    void count_on_markers(const std::vector<DarkDisc>& discs, PointCounts& counts) const;
     LitPoint light_point(const Vector3d& p_in_ct, const Vector3d& normal_in_ct, double steepest_cosine,
                          PointCounts& counts) const;
     void add_ribbon(const Stroke& stroke, bool broken);
-    void draw_stroke(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts, RgbImage& picture);
+    void draw_stroke(const Stroke& stroke, const RenderSettings& settings, const std::vector<DarkDisc>& discs,
+                     RenderCounts& counts, RgbImage& picture);
     bool can_be_lit_whole(const Label& label, const RenderSettings& settings, const std::vector<DarkDisc>& discs);
     /// False where it cannot be lit whole: then nothing of it is.
     bool draw_label(const Label& label, const RenderSettings& settings, const std::vector<DarkDisc>& discs,
@@ -151,14 +154,24 @@ void DrawingRenderer::Parts::add_ribbon(const Stroke& stroke, bool broken) {
     }
 }
 
-void DrawingRenderer::Parts::draw_stroke(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts,
-                                         RgbImage& picture) {
+void DrawingRenderer::Parts::count_on_markers(const std::vector<DarkDisc>& discs, PointCounts& counts) const {
+    for (const LitPoint& point : points) {
+        if (!point.lit || std::ranges::none_of(discs, [&](const DarkDisc& disc) { return disc.covers(point.pixel); }))
+            continue;
+        --counts.lit;
+        ++counts.on_marker;
+    }
+}
+
+void DrawingRenderer::Parts::draw_stroke(const Stroke& stroke, const RenderSettings& settings,
+                                         const std::vector<DarkDisc>& discs, RenderCounts& counts, RgbImage& picture) {
     if (stroke.normals_in_ct.size() != stroke.points_in_ct.size())
         throw InputError("", "a stroke of the drawing has not one normal per point", "Draw the plan again.");
     const double brightness = share_of(stroke.item, settings);
     if (stroke.points_in_ct.size() < 2 || !(stroke.width_mm > 0) || !(brightness > 0)) return;
     PointCounts here;
     light_points(stroke, settings, here);
+    count_on_markers(discs, here);
     counts += here;
     const bool of_item = stroke.item >= 0 && static_cast<std::size_t>(stroke.item) < counts.items.size();
     if (of_item && stroke.kind != StrokeKind::check_mark)  // (beside the item, for the cameras)
@@ -200,7 +213,7 @@ bool DrawingRenderer::Parts::draw_label(const Label& label, const RenderSettings
     }
     raster.flush(dimmed(label.colour, settings.brightness), picture);
     RenderCounts not_of_lines;
-    if (!label.leader.points_in_ct.empty()) draw_stroke(label.leader, settings, not_of_lines, picture);
+    if (!label.leader.points_in_ct.empty()) draw_stroke(label.leader, settings, discs, not_of_lines, picture);
     return true;
 }
 
@@ -226,6 +239,7 @@ PointCounts& PointCounts::operator+=(const PointCounts& others) {
     too_steep += others.too_steep;
     hidden += others.hidden;
     outside += others.outside;
+    on_marker += others.on_marker;
     return *this;
 }
 
@@ -269,7 +283,7 @@ RenderCounts DrawingRenderer::render_into(RgbImage& picture, const PlanDrawing& 
     const std::vector<DarkDisc> discs = dark_discs(parts.projector, rig_from_patient, settings);
     for (const Stroke& stroke : drawing.strokes)
         if (settings.only_item < 0 || stroke.item == settings.only_item)
-            parts.draw_stroke(stroke, settings, counts, picture);
+            parts.draw_stroke(stroke, settings, discs, counts, picture);
     for (const Label& label : drawing.labels) {
         const bool wanted =
             settings.item_of_moment < 0 ? !label.of_moment : label.of_moment && label.item == settings.item_of_moment;

@@ -38,6 +38,7 @@ struct PointCounts {
     std::size_t too_steep = 0;  ///< the light would graze the skin, or it faces away
     std::size_t hidden = 0;     ///< other skin stands in the light's way
     std::size_t outside = 0;    ///< out of the projector's picture
+    std::size_t on_marker = 0;  ///< a marker is there, or so near that it is kept dark
 
     /// Of all its points; 0 where there are none.
     double lit_share() const;

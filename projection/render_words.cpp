@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "projection/render_drawing.h"
 
@@ -46,9 +48,12 @@ std::vector<std::string> sentences_of_unlit(const RenderCounts& counts, const Pl
             said.push_back(fmt::format("{}: no light reaches it from here.", name));
             continue;
         }
-        const char* where = light.outside >= std::max(light.hidden, light.too_steep) ? "out of the projector's picture"
-                            : light.hidden >= light.too_steep                        ? "behind other skin"
-                                                                                     : "where the skin turns away";
+        const std::array<std::pair<std::size_t, const char*>, 4> reasons{
+            {{light.outside, "out of the projector's picture"},
+             {light.hidden, "behind other skin"},
+             {light.too_steep, "where the skin turns away"},
+             {light.on_marker, "a marker lies there"}}};
+        const char* const where = std::ranges::max_element(reasons, {}, [](const auto& r) { return r.first; })->second;
         said.push_back(fmt::format("{}: about {:.0f} % of it has no light ({}); it goes on where the light ends.", name,
                                    5 * std::round(20 * dark), where));
     }

@@ -79,6 +79,7 @@ void sum_up(LightCheck& check) {
         sigmas.push_back(s.sigma_mm);
         brighter.push_back(s.brighter);
     }
+    check.fainter = quantile(brighter, 0.2);
     check.brighter = quantile(std::move(brighter), 0.9);
     check.seen = static_cast<int>(sizes.size());
     check.off_mm = quantile(sizes, 0.95);

@@ -70,6 +70,7 @@ Json json_of(const LightCheck& check) {
               {"sigma_mm", check.sigma_mm},
               {"background", check.background},
               {"brighter", check.brighter},
+              {"fainter", check.fainter},
               {"told_whole", check.told_whole}};
     if (check.far_mm) json["far_mm"] = *check.far_mm;
     return json;

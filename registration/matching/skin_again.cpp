@@ -1,5 +1,6 @@
 #include "registration/matching/skin_again.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -51,8 +52,16 @@ SkinAgain skin_again(const PointCloud& cloud, const SkinLut& lut, const RigidTra
         if (!((p - foot).norm() < kNear_mm) || !places.holds(p - (p - foot).dot(normal) * normal)) continue;
         again.cloud.points_in_rig.push_back(cloud.points_in_rig[i]);
         if (has_normals) again.cloud.normals_in_rig.push_back(cloud.normals_in_rig[i]);
-        off_mm.push_back(std::abs((p - foot).dot(normal) - skin_offset_mm));
+        off_mm.push_back((p - foot).dot(normal) - skin_offset_mm);
     }
+    constexpr double kOn_skin_mm = 1;
+    const auto share = [&](const auto& fact) {
+        const auto count = std::count_if(off_mm.begin(), off_mm.end(), fact);
+        return off_mm.empty() ? 0 : static_cast<double>(count) / static_cast<double>(off_mm.size());
+    };
+    again.near_share = share([](double mm) { return std::abs(mm) <= kOn_skin_mm; });
+    again.inside_share = share([](double mm) { return mm < -kOn_skin_mm; });
+    for (double& mm : off_mm) mm = std::abs(mm);
     again.median_mm = median(std::move(off_mm));
     return again;
 }

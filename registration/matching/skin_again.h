@@ -11,6 +11,7 @@ namespace planlight {
 struct SkinAgain {
     PointCloud cloud;      ///< facing as the CT's skin and within 10 mm of it, in rig; with normals where the scan has
     double median_mm = 0;  ///< of these from the skin, absolute; 0 when there are none
+    double near_share = 0, inside_share = 0;  ///< of these within 1 mm of the skin, and farther inside of it
 };
 
 /// Cloth beside the skin is left out: it says nothing of where the skin lies. `found` known: only in the

@@ -1,6 +1,7 @@
 // A session goes on with the match of one that was cut short when all is as it was; else it stays dark and says why.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <random>
 
@@ -190,6 +191,36 @@ PointCloud face_of(const SkinLut& lut) {
         cloud.normals_in_rig.push_back(normal);
     }
     return cloud;
+}
+
+// Matched on bare skin, draped afterwards: the drapes are no skin that lies elsewhere.
+TEST_F(Resume, DrapesThatWereLaidOnTheSkinDoNotMakeItLieElsewhere) {
+    const Case& the_case = test::example_case().prepared;
+    const PointCloud bare = face_of(the_case.lut);
+    RegistrationResult match;
+    match.skin = measure_displacement(bare, the_case.lut, RigidTransform::Identity());
+    match.residual_median_mm = 0.2;
+    PointCloud draped = bare;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> cloth_mm(2, 8);
+    std::vector<double> heights;
+    for (const Vector3d& p : bare.points_in_rig) heights.push_back(p.z());
+    std::sort(heights.begin(), heights.end());
+    const double edge = heights[heights.size() * 65 / 100];
+    for (std::size_t i = 0; i < draped.size(); ++i)  // all but a window
+        if (draped.points_in_rig[i].z() < edge) draped.points_in_rig[i] += cloth_mm(random) * draped.normals_in_rig[i];
+    const auto checked = [&](const PointCloud& cloud, const Vector3d& slide_mm) {
+        RigidTransform rig_from_ct = RigidTransform::Identity();
+        rig_from_ct.translation() = slide_mm;
+        SkinCheck check;
+        compare_skin(cloud, the_case, match, rig_from_ct, ResumeSettings{}.max_more_residual_mm, check);
+        return check;
+    };
+    const SkinCheck where_it_was = checked(draped, Vector3d::Zero());
+    EXPECT_GT(where_it_was.residual_mm, 2) << "most of what is scanned is cloth";
+    EXPECT_FALSE(where_it_was.elsewhere) << where_it_was.why_not << ", " << where_it_was.residual_mm;
+    const SkinCheck moved = checked(draped, {0, 12, 0});
+    EXPECT_FALSE(moved.known && moved.off_mm < 2) << "a head that moved under them is not said to be in its place";
 }
 
 // From 20 mm off the fit finds some place near by, with a bound of several millimetres: that was "within 0.9 mm".

@@ -11,7 +11,7 @@ LightCheck look(double light, double skin, double share, int seen = 20) {
     check.expected = 20;
     check.seen = seen;
     check.background = skin;
-    check.brighter = share * light / skin;
+    check.brighter = check.fainter = share * light / skin;
     return check;
 }
 

@@ -231,6 +231,19 @@ TEST(LightGate, ANewMatchAndALongPauseAskAgain) {
     EXPECT_NE(after(gate, now, 5, seen_at(0.1)).trust, LightTrust::aligned);
 }
 
+// Hands and instruments over nearly all of the plan: what few edges are taken for light lie anywhere.
+TEST(LightGate, FewStretchesThatSeemToLieAsideAreNoReasonToGoDark) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    LightCheck check = seen_at(2.6, 5, 56);
+    const auto covered = after(gate, now, 40, check);
+    EXPECT_EQ(covered.trust, LightTrust::look);
+    EXPECT_FALSE(covered.stop);
+    check.seen = 40;
+    EXPECT_TRUE(after(gate, now, 3, check).stop) << "light as a whole";
+}
+
 TEST(LightGate, AHandInTheLightIsNoReasonToGoDark) {
     LightGate gate;
     Instant now{};
@@ -248,7 +261,7 @@ TEST(LightGate, LinesThatLampsOutshineAreWarnedOf) {
         Instant now{};
         gate.verify(now);
         LightCheck check = seen_at(0.1);
-        check.brighter = brighter;
+        check.brighter = check.fainter = brighter;
         const auto ruling = after(gate, now, 10, seen ? std::optional(check) : std::nullopt);
         EXPECT_EQ(ruling.trust, seen ? LightTrust::aligned : LightTrust::look);
         return std::any_of(ruling.details.begin(), ruling.details.end(),
@@ -270,17 +283,17 @@ TEST(LightGate, LampsAreNamedWhereTheyOutshineNearlyAllAndTheWarningDoesNotFlick
     gate.verify(now);
     EXPECT_TRUE(says(after(gate, now, 10, seen_at(0.1, 2, 40)), "lamps"));
     LightCheck check = seen_at(0.1);
-    check.brighter = 0.02;
+    check.brighter = check.fainter = 0.02;
     EXPECT_TRUE(says(after(gate, now, 10, check), "less than 10 %"));
-    check.brighter = 0.27;
+    check.brighter = check.fainter = 0.27;
     EXPECT_TRUE(says(after(gate, now, 100, check), "less than 30 %"));
     for (const double brighter : {0.31, 0.29, 0.33, 0.31}) {
-        check.brighter = brighter;
+        check.brighter = check.fainter = brighter;
         EXPECT_TRUE(says(after(gate, now, 100, check), "lamps")) << brighter;
     }
-    check.brighter = 0.4;
+    check.brighter = check.fainter = 0.4;
     EXPECT_FALSE(says(after(gate, now, 100, check), "lamps"));
-    check.brighter = 0.33;
+    check.brighter = check.fainter = 0.33;
     EXPECT_FALSE(says(after(gate, now, 100, check), "lamps"));
 }
 

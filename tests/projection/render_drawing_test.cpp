@@ -351,6 +351,16 @@ TEST(RenderDrawing, NoLightTouchesAMarker) {
         nearest_mm = std::min(nearest_mm, (scene().rig_from_ct * p.on_ball - marker_in_rig).norm());
     EXPECT_GT(nearest_mm, 10.2 - 0.2);  // 9 mm and the halo of 1.2 mm, to a pixel
     EXPECT_LT(nearest_mm, 10.2 + 0.6);
+    drawing.items.resize(1);
+    drawing.items[0].name = "Cut";
+    RgbImage again;
+    const RenderCounts counts =
+        scene().renderer.render_into(again, drawing, scene().rig_from_ct, rig_from_patient, settings);
+    EXPECT_GT(counts.on_marker, counts.points / 50) << "and nobody says that it is lit";
+    EXPECT_EQ(counts.lit + counts.on_marker + counts.too_steep + counts.hidden + counts.outside, counts.points);
+    const auto said = sentences_of_unlit(counts, drawing);
+    ASSERT_FALSE(said.empty());
+    EXPECT_NE(said.front().find("a marker lies there"), std::string::npos) << said.front();
 }
 
 TEST(RenderDrawing, OneItemAloneAndDimmed) {
