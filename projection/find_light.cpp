@@ -97,12 +97,15 @@ std::vector<double> response_of_ridge(double off_mm, double sigma_mm, std::size_
     return matched(ridge, sigma_mm);
 }
 
-/// Ink on the skin, or a hair: what the filter makes of a dark line has a bright one on either side that is not there.
+/// Ink along the stroke, where a pen was led along the light: what the filter makes of a dark line has a bright one on
+/// either side that is not there.
 bool beside_a_darker_line(const std::vector<double>& response, std::size_t at) {
-    constexpr double kBeside_mm = 2;
-    const auto reach = static_cast<std::size_t>(kBeside_mm / kStep_mm);
-    const auto first = response.begin() + static_cast<std::ptrdiff_t>(at - std::min(at, reach));
-    const auto last = response.begin() + static_cast<std::ptrdiff_t>(std::min(response.size(), at + reach + 1));
+    constexpr double kInk_mm = 0.7, kBeside_mm = 0.6;
+    const std::size_t middle = response.size() / 2,
+                      reach = std::min(middle, static_cast<std::size_t>(kInk_mm / kStep_mm));
+    if (std::abs(static_cast<double>(at) - static_cast<double>(middle)) * kStep_mm < kBeside_mm) return false;
+    const auto first = response.begin() + static_cast<std::ptrdiff_t>(middle - reach);
+    const auto last = response.begin() + static_cast<std::ptrdiff_t>(std::min(response.size(), middle + reach + 1));
     return -*std::min_element(first, last) > response[at];
 }
 

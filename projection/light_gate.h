@@ -16,7 +16,7 @@ struct LightGateSettings {
     double least_seen_share = 0.5;     ///< of the stretches that the cameras should see
     double least_seen_of_item = 0.3;   ///< of the stretches of each item, over the looks of the last `fresh`
     double least_asked_of_item = 0.5;  ///< of the stretches of each item that are lit: else it is measured in part only
-    double least_seen_of_asked = 0.7;  ///< and of those that the cameras should see
+    double least_seen_of_asked = 0.5;  ///< and of those that the cameras should see
     int least_seen = 5;                ///< stretches: fewer are no measurement
     int green_after = 3;               ///< good measurements in a row, of all the light and of each item
     int dark_after = 2;                ///< bad ones in a row

@@ -134,14 +134,17 @@ struct PictureThread::Painter {
             throw std::runtime_error(std::string("its picture was not shown: ") + complaint);
     }
 
-    /// A colour that was not there before, into the buffer that is not seen yet: black that is read back could be that
-    /// of a read that never came.
+    /// A pixel of a colour that was not there before, into the buffer that is not seen yet: black that is read back
+    /// could be that of a read that never came.
     bool draws_a_canary() {
         canary = static_cast<std::uint8_t>(canary > 200 ? 60 : canary + 20);
         const Rgb colour{canary, static_cast<std::uint8_t>(255 - canary), 90};
         glClearColor(static_cast<float>(colour[0]) / 255, static_cast<float>(colour[1]) / 255,
                      static_cast<float>(colour[2]) / 255, 1);
+        glScissor(width / 2, height - 1 - height / 2, 1, 1);
+        glEnable(GL_SCISSOR_TEST);
         glClear(GL_COLOR_BUFFER_BIT);
+        glDisable(GL_SCISSOR_TEST);
         return reads_back({width / 2, height / 2}, height, colour);
     }
 
