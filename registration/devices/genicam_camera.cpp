@@ -19,6 +19,7 @@ namespace planlight {
 namespace {
 
 constexpr int kBuffers = 6;  // on their way; more would only hide that nobody takes the frames
+constexpr Instant kJustHeard = std::chrono::milliseconds(10);  // a frame's own taking over
 constexpr Instant kPatience = std::chrono::milliseconds(100);
 constexpr std::size_t kLearnt = 20;  // frames: one that came quickly is among them
 
@@ -299,11 +300,11 @@ bool GenicamCamera::clock_is_known(Instant by_device, Instant arrived) {
     return true;
 }
 
-/// Whether exposure and gain are still what they were at the start; asked now and then. A camera from which nothing
-/// comes is not asked: it would be waited for, for seconds, before its silence is told.
+/// Whether exposure and gain are still what they were at the start; asked now and then, right after a frame: a camera
+/// whose power has gone would be waited for, for seconds, before its silence is told.
 bool GenicamCamera::still_as_set() {
     const Instant now = clock_.now();
-    if (now - looked_at_ < settings_.look_every || now - heard_at_ > kPatience) return true;
+    if (now - looked_at_ < settings_.look_every || now - heard_at_ > kJustHeard) return true;
     looked_at_ = now;
     GenicamFailure failure;
     const double exposure_us = arv_camera_get_exposure_time(device_->camera.get(), failure.slot());
