@@ -24,11 +24,11 @@ bool BlackGamma::Table::all_zero() const {
     return zero(red) && zero(green) && zero(blue);
 }
 
-BlackGamma::Table BlackGamma::Table::all_of(double share_at_end) const {
+BlackGamma::Table BlackGamma::Table::linear_to(double end) const {
     Table table = *this;
     for (auto* values : {&table.red, &table.green, &table.blue})
         for (std::size_t i = 0; i < values->size(); ++i)
-            (*values)[i] = static_cast<unsigned short>(share_at_end * 0xffff * static_cast<double>(i) /
+            (*values)[i] = static_cast<unsigned short>(end * 0xffff * static_cast<double>(i) /
                                                        static_cast<double>(values->size() - 1));
     return table;
 }
@@ -85,7 +85,7 @@ bool BlackGamma::blacken(const ProjectorOutput& output) {
         const bool known =
             std::any_of(before_.begin(), before_.end(), [&](const Table& before) { return before.crtc == table.crtc; });
         if (!known) before_.push_back(table);
-        if (!table.all_zero()) set(table.all_of(0));
+        if (!table.all_zero()) set(table.linear_to(0));
     }
     const auto kept = tables_of(crtcs);
     return !kept.empty() && kept.size() == crtcs.size() &&
@@ -102,9 +102,9 @@ void BlackGamma::take_over(const ProjectorOutput& output) {
     for (const Table& table : tables_of(all_crtcs())) {
         if (!table.all_zero()) continue;
         if (std::find(own.begin(), own.end(), table.crtc) == own.end())
-            set(table.all_of(1));
+            set(table.linear_to(1));
         else
-            before_.push_back(table.all_of(1));
+            before_.push_back(table.linear_to(1));
     }
 }
 

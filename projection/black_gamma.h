@@ -36,7 +36,7 @@ private:
         std::vector<unsigned short> red, green, blue;
 
         bool all_zero() const;
-        Table all_of(double share_at_end) const;  ///< linear up to there
+        Table linear_to(double end) const;  ///< of full light
     };
     std::vector<RRCrtc> crtcs_of(const ProjectorOutput& output) const;
     std::vector<RRCrtc> all_crtcs() const;

@@ -6,7 +6,6 @@
 // Last: its macros are everywhere.
 #include <X11/Xutil.h>
 
-#include "projection/x11_compositor.h"
 #include "projection/x11_pointers.h"
 
 namespace planlight {
@@ -56,16 +55,6 @@ RgbImage MonitorPicture::look() {
     }
     XDestroyImage(image);
     return picture;
-}
-
-bool desktop_is_composited() {
-    const X11Display display(XOpenDisplay(nullptr));
-    return display && is_composited(display.get());
-}
-
-bool desktop_is_wayland() {
-    const X11Display display(XOpenDisplay(nullptr));
-    return display && is_wayland(display.get());
 }
 
 }  // namespace planlight

@@ -14,6 +14,8 @@ struct GLFWwindow;
 
 namespace planlight {
 
+class PicturePainter;
+
 /// Owns the graphics context of the projector window and draws its picture 1:1, or black, from a thread of its own, so
 /// that the picture expires even while the rest of the program hangs.
 class PictureThread {
@@ -43,9 +45,8 @@ public:
     bool dark() const;
 
 private:
-    struct Painter;
     void run();
-    void draw_what_is_wanted(Painter& painter);
+    void draw_what_is_wanted(PicturePainter& painter);
     void wait_and_take(std::unique_lock<std::mutex>& lock);
     bool drawn_in_time(std::unique_lock<std::mutex>& lock, std::uint64_t number);
 

@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "planning_io/types/error.h"
+#include "projection/desktop_kind.h"
 #include "projection/edid.h"
 #include "projection/glfw_session.h"
 #include "projection/monitor_lock.h"
-#include "projection/monitor_picture.h"
 #include "projection/monitors_kept_on.h"
 #include "projection/output_turn.h"
 #include "projection/picture_thread.h"

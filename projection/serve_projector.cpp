@@ -62,7 +62,7 @@ private:
 /// driver.
 void end_with_program(int bell) {
     std::thread([bell] {
-        constexpr auto kToGoDark = std::chrono::milliseconds(300);
+        constexpr auto kToGoDark = std::chrono::milliseconds(250);
         pollfd program{bell, 0, 0};  // asked for nothing but its end
         while (poll(&program, 1, -1) < 0 && errno == EINTR) {
         }

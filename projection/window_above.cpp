@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "projection/x11_compositor.h"
+#include "projection/x11_desktop.h"
 #include "projection/x11_errors.h"
 #include "projection/x11_pointers.h"
 

@@ -15,6 +15,7 @@
 #include "planning_io/case/rig_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/statistics.h"
+#include "projection/desktop_kind.h"
 #include "projection/monitor_picture.h"
 #include "registration/calibration/check_drift.h"
 #include "registration/projector_measurement/measure_latency.h"

@@ -42,15 +42,13 @@ Instant ProjectorKeeper::show(const RgbImage& picture, Instant valid_until) {
     std::unique_lock lock(mutex_);
     if (!projector_) throw DeviceError("Projector", problem_.what, problem_.remedy);
     if (!window_alive()) {
-        dark_watch_.expect_dark_by(clock_.now());
-        projector_->go_dark();
+        darken();
         throw DeviceError("Projector", "the operator's window does not answer, and nothing may be lit meanwhile",
                           "End what else uses the computer.");
     }
     try {
         if (permitted_ && !permitted_()) {
-            dark_watch_.expect_dark_by(clock_.now());
-            projector_->go_dark();
+            darken();
             return clock_.now();
         }
         dark_watch_.expect_dark_from(valid_until);
@@ -70,6 +68,11 @@ void ProjectorKeeper::set_permission(std::function<bool()> permitted) {
 
 void ProjectorKeeper::go_dark() noexcept {
     const std::lock_guard lock(mutex_);
+    darken();
+}
+
+/// The watch is told first: its process may be waited for.
+void ProjectorKeeper::darken() noexcept {
     dark_watch_.expect_dark_by(clock_.now());
     if (projector_) projector_->go_dark();
 }

@@ -69,6 +69,7 @@ private:
     bool alive() const;
     void start_again();
     void check_dark();
+    void darken() noexcept;  ///< under the lock
     void lose(const ProjectorProblem& problem);
 
     ProjectorKeeperSettings settings_;

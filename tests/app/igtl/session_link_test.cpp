@@ -54,7 +54,7 @@ HeardSession hear() {
     both.add(nullptr);
     both.add(link.get());
     test::PlayedSession how;
-    how.seed = 1;
+    how.seed = 1;  // a room in which the cameras can measure every item
     how.updates = 90;
     test::play_session(how, heard.patient, both.all());
     link.reset();

@@ -1,3 +1,5 @@
+#include <cstdlib>
+#include <sstream>
 #include <string>
 
 #include "app/windows/operator_window.h"
@@ -8,7 +10,8 @@
 
 /// draw_windows scene FILE [azimuth elevation], or draw_windows window FILE [width height status [view of the match: 0
 /// to 2 [old, refused, evidence, answer, views, alone,
-/// hidden, hidden-page, landmark, risk or plain [language [dark or bright]]]]]
+/// hidden, hidden-page, landmark, risk or plain [language [dark or bright]]]]]; with BANNER its words,
+/// "headline|detail|..."
 int main(int argc, char** argv) {
     using namespace planlight;
     OperatorModel model = test::fake_model();
@@ -76,6 +79,12 @@ int main(int argc, char** argv) {
         model.confirm_words = "Light 2 is right";
         model.next = OperatorAction::confirm;
         model.check_skin = true;
+    }
+    if (const char* const banner = std::getenv("BANNER")) {
+        std::istringstream lines(banner);
+        std::getline(lines, model.status.headline, '|');
+        model.status.details.clear();
+        for (std::string detail; std::getline(lines, detail, '|');) model.status.details.push_back(detail);
     }
     OperatorWindow window(settings);
     if (special == "evidence" || special == "alone-page" || special == "hidden-page") window.open_evidence();
