@@ -24,10 +24,16 @@ struct LookedAt {
     SeenSegment segment;  ///< without what is joined of the two
     std::array<CameraLook, 2> looks;
     std::array<double, 2> slopes{};  ///< `sideways_slope` of the cameras
+    double projector_slope = 0;
 };
 
-LookedAt looked_at(const StrokeSegment& segment, const std::array<CameraLook, 2>& looks,
-                   const std::array<Vector3d, 2>& cameras_in_ct) {
+/// Where the devices stand, in frame ct.
+struct DevicesInCt {
+    std::array<Vector3d, 2> cameras;
+    Vector3d projector;
+};
+
+LookedAt looked_at(const StrokeSegment& segment, const std::array<CameraLook, 2>& looks, const DevicesInCt& devices) {
     const StrokePlace& middle = segment.middle();
     LookedAt result;
     SeenSegment& seen = result.segment;
@@ -37,8 +43,9 @@ LookedAt looked_at(const StrokeSegment& segment, const std::array<CameraLook, 2>
     seen.normal_in_ct = middle.normal_in_ct;
     seen.tick = segment.tick;
     result.looks = looks;
+    result.projector_slope = sideways_slope(seen, devices.projector);
     for (std::size_t c = 0; c < 2; ++c) {
-        result.slopes[c] = sideways_slope(seen, cameras_in_ct[c]);
+        result.slopes[c] = sideways_slope(seen, devices.cameras[c]);
         if (looks[c].asked) seen.background += looks[c].background / (looks[0].asked && looks[1].asked ? 2 : 1);
         if (!looks[c].light) continue;
         seen.seen = true;
@@ -52,14 +59,30 @@ double variance_of(const CameraLook& look, const CheckLightSettings& settings) {
     return std::pow(look.light->sigma_mm, 2) + std::pow(settings.place_sigma_mm, 2);
 }
 
-/// How far above the drawing's skin the light of some stretches lies; empty where that is not told.
-std::optional<LightDepth> depth_of(std::span<LookedAt* const> stretches, const CheckLightSettings& settings) {
+/// How far above the drawing's skin the light of some stretches lies, however badly they tell it.
+std::optional<LightDepth> rough_depth_of(std::span<LookedAt* const> stretches, const CheckLightSettings& settings) {
     std::vector<SeenDepth> apart;
     for (const LookedAt* s : stretches)
         if (s->looks[0].light && s->looks[1].light)
             apart.push_back({s->looks[0].light->off_mm - s->looks[1].light->off_mm, s->slopes[1] - s->slopes[0],
                              std::sqrt(variance_of(s->looks[0], settings) + variance_of(s->looks[1], settings))});
     return fit_depth(apart);
+}
+
+/// Empty where it is not told well.
+std::optional<LightDepth> depth_of(std::span<LookedAt* const> stretches, const CheckLightSettings& settings) {
+    const auto depth = rough_depth_of(stretches, settings);
+    return depth && told_well(*depth) ? depth : std::nullopt;
+}
+
+double by_untold_height_mm(std::span<LookedAt* const> item, const CheckLightSettings& settings) {
+    const auto depth = rough_depth_of(item, settings);
+    if (depth && told_well(*depth)) return 0;
+    std::vector<SeenAside> seen;
+    for (const LookedAt* s : item)
+        for (std::size_t c = 0; c < 2; ++c)
+            if (s->looks[c].light) seen.push_back({s->looks[c].light->off_mm, s->projector_slope, s->slopes[c]});
+    return aside_by_untold_height_mm(seen, depth);
 }
 
 /// 0 where it is not clearly from nothing.
@@ -118,6 +141,7 @@ void join(std::vector<LookedAt>& looked, std::size_t step, const CheckLightSetti
         const auto depth = depth_of(of_item[i], settings);
         const double depth_mm = depth ? clear_depth(*depth, settings) : 0;
         if (depth_mm != 0) check.items[i].depth_mm = depth_mm;
+        check.items[i].by_untold_height_mm = by_untold_height_mm(of_item[i], settings);
         for (std::size_t k = 0; k < of_item[i].size(); ++k)
             check.segments.push_back(
                 joined(*of_item[i][k], depth_at(k, of_item[i], depth_mm, step, settings), settings));
@@ -154,8 +178,7 @@ struct LightChecker::Parts {
     Sight sight_of(const StrokeSegment& segment, const RigidTransform& rig_from_ct) const;
     void look_around(const RigidTransform& rig_from_ct);
     void look_at(const FigurePatch& patch, const Sight& sight, const RigidTransform& rig_from_ct,
-                 const StereoFrame& pictures, const std::array<Vector3d, 2>& cameras_in_ct,
-                 std::vector<LookedAt>& looked) const;
+                 const StereoFrame& pictures, const DevicesInCt& devices, std::vector<LookedAt>& looked) const;
     std::optional<double> far_light(const RigidTransform& rig_from_ct, const StereoFrame& pictures) const;
 };
 
@@ -197,14 +220,14 @@ void LightChecker::Parts::look_around(const RigidTransform& rig_from_ct) {
 
 /// A small figure counts as two stretches, square to each other.
 void LightChecker::Parts::look_at(const FigurePatch& patch, const Sight& sight, const RigidTransform& rig_from_ct,
-                                  const StereoFrame& pictures, const std::array<Vector3d, 2>& cameras_in_ct,
+                                  const StereoFrame& pictures, const DevicesInCt& devices,
                                   std::vector<LookedAt>& looked) const {
     std::array<std::array<CameraLook, 2>, 2> by_camera;
     if (sight.seen[0]) by_camera[0] = find_figure(patch, rig.left_camera, rig_from_ct, pictures.left, settings);
     if (sight.seen[1]) by_camera[1] = find_figure(patch, rig.right_camera, rig_from_ct, pictures.right, settings);
     for (std::size_t side = 0; side < 2; ++side) {
         const std::array<CameraLook, 2> looks{by_camera[0][side], by_camera[1][side]};
-        if (looks[0].asked || looks[1].asked) looked.push_back(looked_at(patch.sides[side], looks, cameras_in_ct));
+        if (looks[0].asked || looks[1].asked) looked.push_back(looked_at(patch.sides[side], looks, devices));
     }
 }
 
@@ -254,8 +277,9 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
     const std::size_t most = std::max<std::size_t>(1, p.settings.most_segments);
     const std::size_t step = std::max<std::size_t>(1, (p.sights.size() + most - 1) / most);
     const RigidTransform ct_from_rig = rig_from_ct.inverse();
-    const std::array<Vector3d, 2> cameras_in_ct{ct_from_rig * p.rig.left_camera.centre_in_rig(),
-                                                ct_from_rig * p.rig.right_camera.centre_in_rig()};
+    const DevicesInCt devices{
+        {ct_from_rig * p.rig.left_camera.centre_in_rig(), ct_from_rig * p.rig.right_camera.centre_in_rig()},
+        ct_from_rig * p.rig.projector.centre_in_rig()};
     std::vector<LookedAt> looked;
     for (std::size_t i = p.turn++ % step; i < p.sights.size(); i += step) {
         const Sight& sight = p.sights[i];
@@ -268,13 +292,13 @@ LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFra
         item.steep_segments += sight.measurable ? 0 : counts;
         if (i >= crowded) continue;
         if (i >= segments) {
-            p.look_at(p.patches[i - segments], sight, rig_from_ct, frame, cameras_in_ct, looked);
+            p.look_at(p.patches[i - segments], sight, rig_from_ct, frame, devices, looked);
             continue;
         }
         std::array<CameraLook, 2> looks;
         if (sight.seen[0]) looks[0] = find_light(segment, p.rig.left_camera, rig_from_ct, frame.left, p.settings);
         if (sight.seen[1]) looks[1] = find_light(segment, p.rig.right_camera, rig_from_ct, frame.right, p.settings);
-        if (looks[0].asked || looks[1].asked) looked.push_back(looked_at(segment, looks, cameras_in_ct));
+        if (looks[0].asked || looks[1].asked) looked.push_back(looked_at(segment, looks, devices));
     }
     join(looked, step, p.settings, check);
     sum_up_light(step, p.settings, check);

@@ -68,6 +68,9 @@ struct ItemLight {
     /// Of the light above the drawing's skin as both cameras see it, mm: the skin there has risen since the scan, or
     /// sunk. Empty where they do not tell it, or not clearly from nothing.
     std::optional<double> depth_mm;
+    /// So far aside it may lie, mm, by a height of the skin that the cameras do not tell, one of them alone seeing it
+    /// say (`aside_by_untold_height_mm`); 0 where they tell it.
+    double by_untold_height_mm = 0;
     bool known() const { return seen > 0; }
     /// Enough of it was seen to stand for all of it: one stretch of four that lies right says nothing of the others.
     bool told() const { return seen > 0 && 2 * seen >= segments; }

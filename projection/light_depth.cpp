@@ -1,5 +1,6 @@
 #include "projection/light_depth.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "planning_io/types/statistics.h"
@@ -13,7 +14,7 @@ double sideways_slope(const SeenSegment& segment, const Eigen::Vector3d& centre_
 
 std::optional<LightDepth> fit_depth(const std::vector<SeenDepth>& seen) {
     constexpr int kRounds = 5;
-    constexpr double kHuber = 1.5, kWorst_mm = 0.25, kLeastSlopes = 0.15;
+    constexpr double kHuber = 1.5, kLeastSlopes = 0.15;
     std::vector<double> each;
     for (const SeenDepth& s : seen)
         if (std::abs(s.slopes) > kLeastSlopes) each.push_back(s.apart_mm / s.slopes);
@@ -30,8 +31,25 @@ std::optional<LightDepth> fit_depth(const std::vector<SeenDepth>& seen) {
         if (!(information > 0)) return std::nullopt;
         depth = {right / information, 1 / std::sqrt(information)};
     }
-    if (depth.sigma_mm > kWorst_mm) return std::nullopt;
     return depth;
+}
+
+bool told_well(const LightDepth& depth) {
+    constexpr double kWorst_mm = 0.25;
+    return depth.sigma_mm <= kWorst_mm;
+}
+
+double aside_by_untold_height_mm(const std::vector<SeenAside>& seen, const std::optional<LightDepth>& depth) {
+    constexpr double kMost_mm = 3, kHidden_mm = 0.4;
+    double height_mm = depth ? std::min(kMost_mm, std::abs(depth->mm) + 3 * depth->sigma_mm) : kMost_mm;
+    double steepest = 0;
+    for (const SeenAside& s : seen) {
+        steepest = std::max(steepest, std::abs(s.projector_slope));
+        const double slopes = std::abs(s.projector_slope - s.camera_slope);
+        if (slopes * height_mm > std::abs(s.off_mm) + kHidden_mm)
+            height_mm = (std::abs(s.off_mm) + kHidden_mm) / slopes;
+    }
+    return height_mm * steepest;
 }
 
 }  // namespace planlight

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "planning_io/types/statistics.h"
 #include "projection/error_figure.h"
 
 namespace planlight {
@@ -83,6 +84,13 @@ double LightGate::Item::part_off_mm() const {
     return second;
 }
 
+double LightGate::Item::by_untold_height_mm() const {
+    std::vector<double> each;
+    for (const Look& look : looks)
+        if (look.seen > 0) each.push_back(look.by_untold_height_mm);
+    return median(std::move(each));
+}
+
 /// A look at which it was not an item's turn tells nothing of it; one that saw little of it, nothing of its place.
 void LightGate::take(Instant at, const ItemLight& seen, Item& item) const {
     item.name = seen.name;
@@ -93,7 +101,8 @@ void LightGate::take(Instant at, const ItemLight& seen, Item& item) const {
         item.good = 0;  // what comes back into the light is measured anew
     std::erase_if(item.looks, [&](const Item::Look& look) { return !within_fresh(look.at, at); });
     if (seen.dim && !seen.told()) return;
-    item.looks.push_back({at, seen.lit_segments, seen.steep_segments, seen.segments, seen.seen, seen.part_off_mm});
+    item.looks.push_back({at, seen.lit_segments, seen.steep_segments, seen.segments, seen.seen, seen.part_off_mm,
+                          seen.by_untold_height_mm});
     if (seen.segments == 0) return;
     if (seen.seen >= settings_.least_seen_of_item * seen.segments) {
         item.off_mm = seen.off_mm;
@@ -194,6 +203,15 @@ bool LightGate::rule_on_item(const Item& item, Ruling& ruling) const {
         ruling.headline = fmt::format("LOOK: \"{}\" is measured in part only.", item.name);
         ruling.details = {fmt::format("About {:.0f} % of its light are not found in their place: look there yourself.",
                                       10 * std::round(10. * (all.asked - all.seen) / all.asked))};
+        return true;
+    }
+    if (const double aside_mm = item.by_untold_height_mm(); !item.dim && aside_mm > settings_.stop_mm) {
+        ruling.found_wrong = false;
+        ruling.headline = fmt::format("LOOK: the height of the skin at \"{}\" is not known.", item.name);
+        ruling.details = {fmt::format("If it rose or sank since the scan, the light lies up to {:.0f} mm aside: look "
+                                      "yourself.",
+                                      std::ceil(aside_mm)),
+                          "Where both cameras see it they can tell: turn the head, or clear what is before one."};
         return true;
     }
     return false;

@@ -84,6 +84,7 @@ private:
             Instant at{};
             int lit = 0, steep = 0, asked = 0, seen = 0;  ///< stretches
             double part_off_mm = 0;                       ///< `ItemLight::part_off_mm`
+            double by_untold_height_mm = 0;               ///< `ItemLight::by_untold_height_mm`
         };
         std::string name;
         bool dim = false;  ///< `ItemLight::dim`
@@ -92,8 +93,9 @@ private:
         int good = 0;       ///< looks in a row that found it in its place
         double off_mm = 0;  ///< by the last look that saw enough of it
         std::optional<double> depth_mm;
-        Look all() const;            ///< of all looks together
-        double part_off_mm() const;  ///< as two looks found it at least
+        Look all() const;                    ///< of all looks together
+        double part_off_mm() const;          ///< as two looks found it at least
+        double by_untold_height_mm() const;  ///< median of the looks that saw it
     };
     void take(Instant at, const LightCheck& check);
     bool faint(Instant at) const;

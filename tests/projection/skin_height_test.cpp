@@ -85,6 +85,42 @@ TEST(SkinHeight, LightOnSkinThatHasRisenUnderOneItemLiesAsideByItsSlant) {
     }
 }
 
+/// One camera alone tells no height: of light that lies aside by it, it sees a part only.
+TEST(SkinHeight, AnItemThatOneCameraAloneSeesOnRisenSkinIsNoGreen) {
+    for (const double latitude : {-0.35, -0.55, -0.7})
+        for (const bool left_alone : {true, false}) {
+            Plan plan;
+            plan.boreholes = {hole("Hole 1", 0.1, 0.35), hole("Hole 2", 0.5, 0.3), hole("Hole 3", 0.3, 0.65),
+                              hole("Swollen", 0.3, latitude)};
+            const PlanDrawing drawing = drawing_of(plan);
+            RigCalibration rig = test::rig_before_ball();
+            CameraModel& blind = left_alone ? rig.right_camera : rig.left_camera;
+            blind.height = static_cast<int>(project(blind, test::on_ball(0.3, latitude + 0.15))->y());
+            for (const double risen_mm : {-2.5, -1.8, -1.4, 0.0, 1.4, 1.8, 2.5}) {
+                test::LitBall lit;
+                lit.swollen = plan.boreholes.back().position_in_ct;
+                lit.swollen_mm = risen_mm;
+                const LightCheck check = check_light(drawing, test::ball(), rig, RigidTransform::Identity(),
+                                                     test::pictures_of(drawing, rig, lit));
+                const ItemLight& swollen = check.items[3];
+                ASSERT_GT(swollen.seen, 0);
+                const double truth_mm = aside_mm(plan.boreholes.back().position_in_ct, risen_mm, rig);
+                const LightGate::Ruling ruling = ruling_of(check);
+                std::printf("one camera, latitude %.2f, risen by %4.1f: %.2f aside, told %.2f, by height %.2f: %s\n",
+                            latitude, risen_mm, truth_mm, swollen.off_mm, swollen.by_untold_height_mm,
+                            ruling.headline.c_str());
+                for (int k = 0; k < 3; ++k) EXPECT_EQ(check.items[static_cast<std::size_t>(k)].by_untold_height_mm, 0);
+                if (risen_mm == 0 && latitude > -0.6) {  // beyond that it is measured in part only
+                    EXPECT_EQ(ruling.trust, LightTrust::aligned) << ruling.headline;
+                }
+                if (truth_mm > 2) {
+                    EXPECT_EQ(ruling.trust, LightTrust::look);
+                    EXPECT_NE(ruling.headline.find("Swollen"), std::string::npos) << ruling.headline;
+                }
+            }
+        }
+}
+
 /// The skin has risen under a part of a long line, by an injection or a retractor say: most of it lies right, and 95 %
 /// of all the light, but that part lies millimetres aside.
 /// `dashed`: the trace of a cut plane, else an osteotomy line.
