@@ -59,6 +59,21 @@ double variance_of(const CameraLook& look, const CheckLightSettings& settings) {
     return std::pow(look.light->sigma_mm, 2) + std::pow(settings.place_sigma_mm, 2);
 }
 
+/// A stretch of an item, those beside it, and the item's ticks near by: along the cameras' base a line tells no height
+/// by itself.
+std::vector<LookedAt*> beside(std::size_t i, std::span<LookedAt* const> item, std::size_t step,
+                              const CheckLightSettings& settings) {
+    const double reach_mm = 1.7 * settings.segment_mm * static_cast<double>(step);
+    const SeenSegment& middle = item[i]->segment;
+    std::vector<LookedAt*> result{item[i]};
+    for (const std::size_t k : {i - 1, i + 1})  // none before the first
+        if (k < item.size() && side_by_side(item[k]->segment, middle, step, settings)) result.push_back(item[k]);
+    for (LookedAt* other : item)
+        if (other != item[i] && other->segment.tick && (other->segment.p_in_ct - middle.p_in_ct).norm() < reach_mm)
+            result.push_back(other);
+    return result;
+}
+
 /// How far above the drawing's skin the light of some stretches lies, however badly they tell it.
 std::optional<LightDepth> rough_depth_of(std::span<LookedAt* const> stretches, const CheckLightSettings& settings) {
     std::vector<SeenDepth> apart;
@@ -75,14 +90,29 @@ std::optional<LightDepth> depth_of(std::span<LookedAt* const> stretches, const C
     return depth && told_well(*depth) ? depth : std::nullopt;
 }
 
-double by_untold_height_mm(std::span<LookedAt* const> item, const CheckLightSettings& settings) {
-    const auto depth = rough_depth_of(item, settings);
-    if (depth && told_well(*depth)) return 0;
-    std::vector<SeenAside> seen;
-    for (const LookedAt* s : item)
-        for (std::size_t c = 0; c < 2; ++c)
-            if (s->looks[c].light) seen.push_back({s->looks[c].light->off_mm, s->projector_slope, s->slopes[c]});
-    return aside_by_untold_height_mm(seen, depth);
+/// `ItemLight::by_untold_height_mm`. Each stretch is told by all of the item that lies round it: the item's other parts
+/// need not speak for it, for the skin may have risen under it alone. Of one stretch alone little is told: the second
+/// worst.
+double by_untold_height_mm(std::span<LookedAt* const> item, std::size_t step, const CheckLightSettings& settings) {
+    const double reach_mm = 2.2 * settings.segment_mm * static_cast<double>(step);
+    double most = 0, second = 0;
+    for (const LookedAt* middle : item) {
+        if (middle->segment.tick || !middle->segment.seen) continue;
+        std::vector<LookedAt*> around;
+        std::vector<SeenAside> seen;
+        for (LookedAt* s : item) {
+            if ((s->segment.p_in_ct - middle->segment.p_in_ct).norm() > reach_mm) continue;
+            around.push_back(s);
+            for (std::size_t c = 0; c < 2; ++c)
+                if (s->looks[c].light) seen.push_back({s->looks[c].light->off_mm, s->projector_slope, s->slopes[c]});
+        }
+        const auto depth = rough_depth_of(around, settings);
+        if (depth && told_well(*depth)) continue;
+        const double aside_mm = aside_by_untold_height_mm(seen, depth);
+        second = std::max(second, std::min(most, aside_mm));
+        most = std::max(most, aside_mm);
+    }
+    return second;
 }
 
 /// 0 where it is not clearly from nothing.
@@ -90,15 +120,10 @@ double clear_depth(const LightDepth& depth, const CheckLightSettings& settings) 
     return std::abs(depth.mm) > std::max(settings.least_depth_mm, 3 * depth.sigma_mm) ? depth.mm : 0;
 }
 
-/// Of one stretch: by itself and those beside it where they clearly tell another depth than all of the item does, for
-/// the skin may have risen under a part of it.
-double depth_at(std::size_t i, const std::vector<LookedAt*>& item, double of_item_mm, std::size_t step,
-                const CheckLightSettings& settings) {
-    std::vector<LookedAt*> together{item[i]};
-    if (i > 0 && side_by_side(item[i - 1]->segment, item[i]->segment, step, settings)) together.push_back(item[i - 1]);
-    if (i + 1 < item.size() && side_by_side(item[i + 1]->segment, item[i]->segment, step, settings))
-        together.push_back(item[i + 1]);
-    const auto depth = together.size() > 1 ? depth_of(together, settings) : std::nullopt;
+/// Of one stretch: where what is seen beside it clearly tells another depth than all of the item does, for the skin may
+/// have risen under a part of it.
+double depth_at(std::span<LookedAt* const> beside, double of_item_mm, const CheckLightSettings& settings) {
+    const auto depth = beside.size() > 1 ? depth_of(beside, settings) : std::nullopt;
     if (!depth || clear_depth({depth->mm - of_item_mm, depth->sigma_mm}, settings) == 0) return of_item_mm;
     return clear_depth(*depth, settings);
 }
@@ -141,10 +166,11 @@ void join(std::vector<LookedAt>& looked, std::size_t step, const CheckLightSetti
         const auto depth = depth_of(of_item[i], settings);
         const double depth_mm = depth ? clear_depth(*depth, settings) : 0;
         if (depth_mm != 0) check.items[i].depth_mm = depth_mm;
-        check.items[i].by_untold_height_mm = by_untold_height_mm(of_item[i], settings);
-        for (std::size_t k = 0; k < of_item[i].size(); ++k)
-            check.segments.push_back(
-                joined(*of_item[i][k], depth_at(k, of_item[i], depth_mm, step, settings), settings));
+        check.items[i].by_untold_height_mm = by_untold_height_mm(of_item[i], step, settings);
+        for (std::size_t k = 0; k < of_item[i].size(); ++k) {
+            const double here_mm = depth_at(beside(k, of_item[i], step, settings), depth_mm, settings);
+            check.segments.push_back(joined(*of_item[i][k], here_mm, settings));
+        }
     }
 }
 

@@ -121,6 +121,50 @@ TEST(SkinHeight, AnItemThatOneCameraAloneSeesOnRisenSkinIsNoGreen) {
         }
 }
 
+/// The rest of a line, seen by both, says nothing of the part that one alone sees; nor do both of one along their base,
+/// but by its ticks.
+TEST(SkinHeight, APartOfALineThatOneCameraAloneSeesOnRisenSkinIsNoGreen) {
+    for (const double latitude : {-0.1, -0.4, -0.55})
+        for (const bool all_by_both : {true, false}) {
+            RigCalibration rig = test::rig_before_ball();
+            Plan plan;
+            plan.boreholes = {hole("Hole 1", 0.1, 0.35), hole("Hole 2", 0.5, 0.3), hole("Hole 3", 0.3, 0.65)};
+            OsteotomyLine line;
+            line.name = "Line";
+            for (double longitude = -0.25; longitude < 0.86; longitude += 0.1)
+                line.points_in_ct.push_back(test::on_ball(longitude, latitude));
+            plan.osteotomy_lines.push_back(line);
+            const PlanDrawing drawing = drawing_of(plan);
+            if (!all_by_both)
+                rig.right_camera.width =
+                    static_cast<int>(project(rig.right_camera, test::on_ball(0.45, latitude))->x());
+            for (const double risen_mm : {-2.5, -1.8, 0.0, 1.8, 2.5}) {
+                test::LitBall lit;
+                lit.swollen = test::on_ball(0.7, latitude);
+                lit.swollen_mm = risen_mm;
+                const LightCheck check = check_light(drawing, test::ball(), rig, RigidTransform::Identity(),
+                                                     test::pictures_of(drawing, rig, lit));
+                const auto cut_light = std::ranges::find(check.items, "Line", &ItemLight::name);
+                ASSERT_NE(cut_light, check.items.end());
+                const double truth_mm = aside_mm(*lit.swollen, risen_mm, rig);
+                const LightGate::Ruling ruling = ruling_of(check);
+                std::printf(
+                    "%s, latitude %.2f, risen by %4.1f: %.2f aside, told %.2f, a part %.2f, by height %.2f: %s\n",
+                    all_by_both ? "both" : "one", latitude, risen_mm, truth_mm, cut_light->off_mm,
+                    cut_light->part_off_mm, cut_light->by_untold_height_mm, ruling.headline.c_str());
+                if (truth_mm > 2) {
+                    EXPECT_EQ(ruling.trust, LightTrust::look);
+                    if (check.off_mm <= 1) {
+                        EXPECT_NE(ruling.headline.find("Line"), std::string::npos) << ruling.headline;
+                    }
+                }
+                if (risen_mm == 0 && all_by_both && latitude > -0.5) {
+                    EXPECT_EQ(ruling.trust, LightTrust::aligned) << ruling.headline;
+                }
+            }
+        }
+}
+
 /// The skin has risen under a part of a long line, by an injection or a retractor say: most of it lies right, and 95 %
 /// of all the light, but that part lies millimetres aside.
 /// `dashed`: the trace of a cut plane, else an osteotomy line.
