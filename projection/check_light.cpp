@@ -186,7 +186,7 @@ struct LightChecker::Parts {
     const SkinSurface& skin;
     const RigCalibration& rig;
     CheckLightSettings settings;
-    std::vector<ItemLight> items;                   ///< names only
+    std::vector<ItemLight> items;                   ///< what is the same in each look
     std::vector<std::optional<StrokePlace>> apart;  ///< of each item without a segment, a place on it
     std::vector<StrokeSegment> segments;
     std::vector<FigurePatch> patches;
@@ -281,9 +281,12 @@ LightChecker::LightChecker(const PlanDrawing& drawing, const SkinSurface& skin, 
         if (parts_->dim(static_cast<int>(i))) parts_->apart[i].reset();
     parts_->sights.resize(parts_->segments.size() + parts_->patches.size() + parts_->crowded.size());
     for (const StrokeSegment& segment : parts_->segments) parts_->apart[static_cast<std::size_t>(segment.item)].reset();
-    for (const DrawnItem& item : drawing.items) {
-        parts_->items.emplace_back().name = item.name;
-        parts_->items.back().dim = parts_->dim(static_cast<int>(parts_->items.size() - 1));
+    const std::vector<double> extents_mm = extents_of_items_mm(drawing);
+    for (std::size_t i = 0; i < drawing.items.size(); ++i) {
+        ItemLight& item = parts_->items.emplace_back();
+        item.name = drawing.items[i].name;
+        item.dim = parts_->dim(static_cast<int>(i));
+        item.extent_mm = extents_mm[i];
     }
 }
 LightChecker::~LightChecker() = default;

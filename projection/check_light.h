@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,6 +55,8 @@ struct ItemLight {
     bool lit = false;  ///< the projector's light reaches it; a camera may not see it, or not apart from other light
     bool dim =
         false;  ///< it is lit dimly beside a bright one (`LightChecker`): that nothing is seen of it tells nothing
+    /// Diagonal of the box round its strokes; infinite: not known.
+    double extent_mm = std::numeric_limits<double>::infinity();
     int lit_segments = 0;        ///< stretches of it that the projector lights
     int steep_segments = 0;      ///< of these, lit at more than `CheckLightSettings::steepest`: nobody asks for them
     int segments = 0, seen = 0;  ///< of these, what should be seen by a camera, and where light was found

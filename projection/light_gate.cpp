@@ -91,10 +91,15 @@ double LightGate::Item::by_untold_height_mm() const {
     return median(std::move(each));
 }
 
+bool LightGate::Item::told_whole() const {
+    return std::ranges::any_of(looks, &Look::told_whole);
+}
+
 /// A look at which it was not an item's turn tells nothing of it; one that saw little of it, nothing of its place.
 void LightGate::take(Instant at, const ItemLight& seen, Item& item) const {
     item.name = seen.name;
     item.dim = seen.dim;
+    item.extent_mm = seen.extent_mm;
     if (seen.lit)
         item.lit_at = at;
     else
@@ -102,7 +107,7 @@ void LightGate::take(Instant at, const ItemLight& seen, Item& item) const {
     std::erase_if(item.looks, [&](const Item::Look& look) { return !within_fresh(look.at, at); });
     if (seen.dim && !seen.told()) return;
     item.looks.push_back({at, seen.lit_segments, seen.steep_segments, seen.segments, seen.seen, seen.part_off_mm,
-                          seen.by_untold_height_mm});
+                          seen.by_untold_height_mm, seen.known() && !seen.one_direction_only});
     if (seen.segments == 0) return;
     if (seen.seen >= settings_.least_seen_of_item * seen.segments) {
         item.off_mm = seen.off_mm;
@@ -191,14 +196,16 @@ bool LightGate::rule_on_item(const Item& item, Ruling& ruling) const {
         ruling.details = {"Look at it on the skin; if it stays so, scan again."};
         return true;
     }
-    if (!item.dim && all.asked < settings_.least_asked_of_item * all.lit) {
+    const bool stands_for_all = item.extent_mm <= settings_.small_item_mm && item.told_whole();
+    const double least_asked = stands_for_all ? settings_.least_seen_of_item : settings_.least_asked_of_item;
+    if (!item.dim && all.asked < least_asked * all.lit) {
         ruling.found_wrong = false;
         ruling.headline = fmt::format("LOOK: \"{}\" is measured in part only.", item.name);
         ruling.details = {fmt::format("The cameras can see about {:.0f} % of its light: look at the rest yourself.",
                                       10 * std::round(10. * all.asked / all.lit))};
         return true;
     }
-    if (!item.dim && all.seen < settings_.least_seen_of_asked * all.asked) {
+    if (!item.dim && !stands_for_all && all.seen < settings_.least_seen_of_asked * all.asked) {
         ruling.found_wrong = false;
         ruling.headline = fmt::format("LOOK: \"{}\" is measured in part only.", item.name);
         ruling.details = {fmt::format("About {:.0f} % of its light are not found in their place: look there yourself.",

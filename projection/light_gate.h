@@ -17,11 +17,12 @@ struct LightGateSettings {
     double least_seen_of_item = 0.3;   ///< of the stretches of each item, over the looks of the last `fresh`
     double least_asked_of_item = 0.5;  ///< of the stretches of each item that are lit: else it is measured in part only
     double least_seen_of_asked = 0.5;  ///< and of those that the cameras should see
-    int least_seen = 5;                ///< stretches: fewer are no measurement
-    int green_after = 3;               ///< good measurements in a row, of all the light and of each item
-    int dark_after = 2;                ///< bad ones in a row
-    double warn_unnoticed_mm = 3;      ///< so far a marker that slips by 1 mm may move the plan before it shows
-    double least_brighter = 0.3;       ///< the fainter lines than the skin beside them; what is below is warned of
+    double small_item_mm = 30;  ///< of an item no larger than this what is seen, in two directions, stands for the rest
+    int least_seen = 5;         ///< stretches: fewer are no measurement
+    int green_after = 3;        ///< good measurements in a row, of all the light and of each item
+    int dark_after = 2;         ///< bad ones in a row
+    double warn_unnoticed_mm = 3;  ///< so far a marker that slips by 1 mm may move the plan before it shows
+    double least_brighter = 0.3;   ///< the fainter lines than the skin beside them; what is below is warned of
     Instant fresh = std::chrono::seconds(1);         ///< an older measurement is none
     Instant verified_for = std::chrono::minutes(5);  ///< of light that was interrupted; then a person looks again
 };
@@ -85,9 +86,11 @@ private:
             int lit = 0, steep = 0, asked = 0, seen = 0;  ///< stretches
             double part_off_mm = 0;                       ///< `ItemLight::part_off_mm`
             double by_untold_height_mm = 0;               ///< `ItemLight::by_untold_height_mm`
+            bool told_whole = false;                      ///< in two directions along the skin
         };
         std::string name;
-        bool dim = false;  ///< `ItemLight::dim`
+        bool dim = false;                                            ///< `ItemLight::dim`
+        double extent_mm = std::numeric_limits<double>::infinity();  ///< `ItemLight::extent_mm`
         Instant lit_at = Instant::min();
         std::vector<Look> looks;
         int good = 0;       ///< looks in a row that found it in its place
@@ -96,6 +99,7 @@ private:
         Look all() const;                    ///< of all looks together
         double part_off_mm() const;          ///< as two looks found it at least
         double by_untold_height_mm() const;  ///< median of the looks that saw it
+        bool told_whole() const;             ///< by one of the looks
     };
     void take(Instant at, const LightCheck& check);
     bool faint(Instant at) const;

@@ -197,6 +197,16 @@ bool is_small(const Stroke& stroke) {
 
 }  // namespace
 
+std::vector<double> extents_of_items_mm(const PlanDrawing& drawing) {
+    std::vector<Eigen::AlignedBox3d> boxes(drawing.items.size());
+    for (const Stroke& stroke : drawing.strokes)
+        if (stroke.kind != StrokeKind::label && stroke.item >= 0)
+            for (const Vector3d& p : stroke.points_in_ct) boxes[static_cast<std::size_t>(stroke.item)].extend(p);
+    std::vector<double> extents_mm;
+    for (const Eigen::AlignedBox3d& box : boxes) extents_mm.push_back(box.isEmpty() ? 0 : box.diagonal().norm());
+    return extents_mm;
+}
+
 std::vector<StrokeSegment> crowded_segments_of(const PlanDrawing& drawing, const std::vector<StrokeSegment>& segments,
                                                const CheckLightSettings& settings) {
     const StrokesNear near(drawing, settings.search_mm);

@@ -40,6 +40,9 @@ std::vector<StrokePlace> places_along(const Stroke& stroke, double spacing_mm);
 /// items without.
 std::vector<std::optional<StrokePlace>> places_of_items(const PlanDrawing& drawing);
 
+/// Of each item, the diagonal of the box round its strokes, labels left out, mm; 0 for items without.
+std::vector<double> extents_of_items_mm(const PlanDrawing& drawing);
+
 /// True when a device sees the place: in its picture, not too steep, no skin before it.
 bool freely_seen(const StrokePlace& place, const SkinSurface& skin, const CameraModel& device,
                  const RigidTransform& rig_from_ct, double steepest);

@@ -43,6 +43,24 @@ TEST(LightGate, AnItemThatIsNotFoundForTheMostPartIsNotGreen) {
     EXPECT_EQ(after(gate, now, 40, check).trust, LightTrust::aligned);
 }
 
+// Of a hole or a way in the cameras see some of its ring and marks: what they see lies within 30 mm of the rest.
+TEST(LightGate, OfASmallItemSomeIsEnoughWhereItTellsBothDirections) {
+    LightCheck check = seen_at(0.1, 55, 68);
+    for (const double extent_mm : {20.0, 60.0})
+        for (const bool one_direction : {false, true})
+            for (const int seen : {4, 2}) {
+                LightGate gate;
+                Instant now{};
+                gate.verify(now);
+                check.items = {item("Holes", 48, 48, 0.1), item("T1", seen, 10, 0.1)};
+                check.items[1].extent_mm = extent_mm;
+                check.items[1].one_direction_only = one_direction;
+                const auto ruling = after(gate, now, 40, check);
+                const bool enough = extent_mm == 20 && !one_direction && seen == 4;
+                EXPECT_EQ(ruling.trust == LightTrust::aligned, enough) << ruling.headline;
+            }
+}
+
 // A head that turns away and back: what was measured before was another moment's light.
 TEST(LightGate, AnItemThatComesBackIntoTheLightIsMeasuredAnew) {
     LightGate gate;
