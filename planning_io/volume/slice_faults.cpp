@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -56,12 +57,25 @@ struct SliceRow {
     std::vector<std::string> hashes;
     std::vector<std::vector<double>> blocks;
     std::vector<bool> plain;    ///< whether a slice shows one value only
-    std::vector<double> noise;  ///< share of the voxels that differ from the slice before
+    std::vector<double> noise;  ///< share of the voxels beside the background that differ from the slice before; not of
+                                ///< pairs of slices that are nearly all background
     std::vector<double> apart;  ///< mean difference of blocks from the slice before
 };
 
-SliceRow row_along(const Volume& volume, std::size_t axis) {
+/// What a program or scanner sets outside of the body or of the field, in one value: the least, and the most frequent.
+std::array<float, 2> background_of(const Volume& volume) {
+    std::unordered_map<float, std::size_t> counts;
+    constexpr std::size_t kMost = 500'000;
+    const std::size_t step = std::max<std::size_t>(1, volume.values.size() / kMost);
+    for (std::size_t i = 0; i < volume.values.size(); i += step) ++counts[volume.values[i]];
+    const auto most = std::ranges::max_element(counts, {}, [](const auto& value) { return value.second; });
+    return {*std::ranges::min_element(volume.values), most == counts.end() ? 0.F : most->first};
+}
+
+SliceRow row_along(const Volume& volume, std::size_t axis, const std::array<float, 2>& background) {
+    constexpr double kLeastAsked = 0.01;
     SliceRow row;
+    const auto is_background = [&](float v) { return v == background[0] || v == background[1]; };
     ThinSlice before;
     for (int k = 0; k < volume.size[axis]; ++k) {
         ThinSlice slice = slice_of(volume, axis, k);
@@ -72,9 +86,13 @@ SliceRow row_along(const Volume& volume, std::size_t axis) {
         hash.add_values(slice.values.data(), slice.values.size());
         row.hashes.push_back(hash.hex());
         if (k > 0) {
-            std::size_t differ = 0;
-            for (std::size_t i = 0; i < slice.values.size(); ++i) differ += slice.values[i] != before.values[i];
-            row.noise.push_back(static_cast<double>(differ) / static_cast<double>(slice.values.size()));
+            std::size_t differ = 0, asked = 0;
+            for (std::size_t i = 0; i < slice.values.size(); ++i) {
+                asked += !is_background(slice.values[i]) || !is_background(before.values[i]);
+                differ += slice.values[i] != before.values[i];
+            }
+            if (static_cast<double>(asked) > kLeastAsked * static_cast<double>(slice.values.size()))
+                row.noise.push_back(static_cast<double>(differ) / static_cast<double>(asked));
             row.apart.push_back(mean_difference(row.blocks[row.blocks.size() - 2], row.blocks.back()));
         }
         before = std::move(slice);
@@ -82,7 +100,7 @@ SliceRow row_along(const Volume& volume, std::size_t axis) {
     return row;
 }
 
-/// Neighbours of a scanner differ by noise nearly everywhere; those of a computed volume may be alike.
+/// Neighbours of a scanner differ by noise nearly everywhere in the body; those of a computed volume may be alike.
 bool is_of_a_scanner(const SliceRow& row) {
     constexpr double kLeastNoise = 0.15;
     return median(row.noise) >= kLeastNoise;
@@ -177,9 +195,10 @@ Exchange exchange_in(const SliceRow& row) {
 
 void note_slice_faults(Volume& volume, std::optional<std::size_t> stacked) {
     constexpr double kMostApart = 2.5, kExchanged = 1.3;
+    const auto background = background_of(volume);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (stacked && axis != *stacked) continue;
-        const SliceRow row = row_along(volume, axis);
+        const SliceRow row = row_along(volume, axis, background);
         if (!is_of_a_scanner(row)) continue;
         if (const std::size_t empty = empty_in(row); empty > 0)
             volume.notes.push_back(fmt::format(
@@ -208,15 +227,19 @@ void note_slice_faults(Volume& volume, std::optional<std::size_t> stacked) {
 
 std::array<double, 3> largest_slice_jumps(const Volume& volume) {
     std::array<double, 3> jumps{};
+    const auto background = background_of(volume);
     for (std::size_t axis = 0; axis < 3; ++axis)
-        if (const SliceRow row = row_along(volume, axis); is_of_a_scanner(row)) jumps[axis] = jump_in(row).second;
+        if (const SliceRow row = row_along(volume, axis, background); is_of_a_scanner(row))
+            jumps[axis] = jump_in(row).second;
     return jumps;
 }
 
 std::array<double, 3> best_slice_exchanges(const Volume& volume) {
     std::array<double, 3> times{};
+    const auto background = background_of(volume);
     for (std::size_t axis = 0; axis < 3; ++axis)
-        if (const SliceRow row = row_along(volume, axis); is_of_a_scanner(row)) times[axis] = exchange_in(row).times;
+        if (const SliceRow row = row_along(volume, axis, background); is_of_a_scanner(row))
+            times[axis] = exchange_in(row).times;
     return times;
 }
 

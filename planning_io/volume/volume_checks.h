@@ -21,8 +21,8 @@ void make_right_handed(Volume& volume);
 /// asked; may be empty.
 bool has_air_in_hu(const Volume& volume, const std::vector<char>& left_out = {});
 
-/// For files that do not say it: a volume whose air is that of HU, and that holds a body in HU, is a CT in HU, another
-/// one an MR. Noted in `volume.notes`.
+/// For files that do not say it: a volume whose air is that of HU, and that holds a body in HU, is a CT in HU; one of a
+/// CT to whose values 1024 was added is made one; another one is an MR. Noted in `volume.notes`.
 void tell_modality_by_values(Volume& volume);
 
 /// Throws InputError when there can be no skin in the volume: one value only, nothing but air, no air, or a body that

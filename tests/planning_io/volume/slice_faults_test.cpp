@@ -55,6 +55,31 @@ TEST(SliceFaults, ABorderOfOneValueRoundNoiseIsNone) {  // as a program pads a v
     EXPECT_TRUE(volume.notes.empty()) << volume.notes.front();
 }
 
+// A program set all outside of the head to one value, and the field is wide: nine tenths of each slice are alike.
+TEST(SliceFaults, AWideCleanBackgroundHidesNone) {
+    const Volume ball = stacked(kSize, [](int k) { return k; });
+    for (const bool twice : {true, false}) {
+        constexpr int kWide = 4 * kSize;
+        Volume volume;
+        for (int k = 0; k < kSize + 6; ++k) {
+            if (!twice && k >= kSize - 6) break;
+            const int from = twice ? (k < 26 ? k : k - 6) : (k < 15 ? k : k + 6);
+            for (int j = 0; j < kWide; ++j)
+                for (int i = 0; i < kWide; ++i) {
+                    const bool inside = std::hypot(i - 31.5, std::hypot(j - 31.5, from - 31.5)) < 29;
+                    volume.values.push_back(inside ? ball.at(i, j, from) : -1024);
+                }
+            ++volume.size[2];
+        }
+        volume.size[0] = volume.size[1] = kWide;
+        note_slice_faults(volume);
+        ASSERT_FALSE(volume.notes.empty()) << twice;
+        EXPECT_NE(volume.notes[0].find(twice ? "6 of its 70 slices along axis 3 are there twice" : "missing between"),
+                  std::string::npos)
+            << volume.notes[0];
+    }
+}
+
 TEST(SliceFaults, SlicesThatAreThereTwiceAreSaid) {
     Volume volume = stacked(kSize, [](int k) { return k; });
     const auto slab = static_cast<std::ptrdiff_t>(volume.index(0, 0, 1));

@@ -66,6 +66,49 @@ TEST(ModalityByValues, PaddingOfAnMrIsNoAirOfACt) {
     EXPECT_EQ(same_ct.modality, "CT");
 }
 
+// As unsigned pixels without their intercept: a skull with brain in it and skin round it, with noise.
+TEST(ModalityByValues, ACtToWhichAThousandWasAddedIsACt) {
+    std::mt19937 random(5);
+    std::normal_distribution<float> noise(0, 12);
+    for (const float added : {1024.F, 1000.F}) {
+        Volume ct;
+        ct.size = {60, 60, 60};
+        for (int k = 0; k < 60; ++k)
+            for (int j = 0; j < 60; ++j)
+                for (int i = 0; i < 60; ++i) {
+                    const double r = std::hypot(i - 29.5, std::hypot(j - 29.5, k - 29.5));
+                    const float hu = r > 25 ? -1000.F : r > 22 ? -20.F : r > 20 ? 900.F : 35.F;
+                    ct.values.push_back(std::max(0.F, hu + added + noise(random)));
+                }
+        const float skin = ct.values[ct.index(30, 30, 53)];
+        tell_modality_by_values(ct);
+        EXPECT_EQ(ct.modality, "CT");
+        EXPECT_TRUE(ct.is_hu);
+        EXPECT_FLOAT_EQ(ct.values[ct.index(30, 30, 53)], skin - 1024);
+        ASSERT_EQ(ct.notes.size(), 1U);
+        EXPECT_NE(ct.notes[0].find("1024"), std::string::npos);
+    }
+}
+
+// The same head as a T1-weighted MR shows it: bright scalp, dark skull, grey and white matter.
+TEST(ModalityByValues, AnMrOfTheSameGreysIsNoCt) {
+    std::mt19937 random(5);
+    std::normal_distribution<float> noise(0, 40);
+    for (const float scale : {0.6F, 0.8F, 1.F, 1.2F, 1.5F}) {
+        Volume mr;
+        mr.size = {60, 60, 60};
+        for (int k = 0; k < 60; ++k)
+            for (int j = 0; j < 60; ++j)
+                for (int i = 0; i < 60; ++i) {
+                    const double r = std::hypot(i - 29.5, std::hypot(j - 29.5, k - 29.5));
+                    const float grey = r > 25 ? 20.F : r > 22 ? 1600.F : r > 20 ? 200.F : r > 15 ? 800.F : 1100.F;
+                    mr.values.push_back(std::max(0.F, scale * (grey + noise(random))));
+                }
+        tell_modality_by_values(mr);
+        EXPECT_EQ(mr.modality, "MR") << scale;
+    }
+}
+
 TEST(ModalityByValues, NothingButAirHasNoSkin) {
     Volume air = ball_of(-1000, -1000);
     tell_modality_by_values(air);
