@@ -9,6 +9,7 @@
 #include "planning_io/types/statistics.h"
 #include "registration/scan/check/camera_gamma.h"
 #include "registration/scan/check/check_sequence.h"
+#include "registration/scan/check/panel_ends.h"
 #include "registration/scan/decode/gray_code.h"
 
 namespace planlight {
@@ -125,6 +126,9 @@ void judge_white(const GrayImage& white, const std::vector<BoardPixel>& pixels, 
 void keep_light(std::span<const GrayImage> frames, const StripeSettings& stripes, const std::vector<BoardPixel>& pixels,
                 const ObserveSettings& settings, CameraObservation& seen) {
     const DecodedView code = decode_calibration_light(frames, stripes);
+    if (settings.check_sequence && seen.wrong_sequence.empty() && stripes.phase_steps > 0)
+        if (const auto problem = check_panel_ends(code, frames[0], frames[1], stripes))
+            seen.wrong_sequence = problem->what;
     std::vector<LightSample> all;
     std::vector<double> contrast;
     std::size_t decoded = 0, lit = 0;

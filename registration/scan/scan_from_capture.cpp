@@ -9,6 +9,7 @@
 
 #include "planning_io/types/error.h"
 #include "registration/scan/check/camera_gamma.h"
+#include "registration/scan/check/panel_ends.h"
 #include "registration/scan/decode/decode_capture.h"
 #include "registration/scan/decode/merge_exposures.h"
 #include "registration/scan/scan_surface.h"
@@ -60,6 +61,20 @@ void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
     };
     judge(result.left_sequence, capture.left, "left");
     judge(result.right_sequence, capture.right, "right");
+}
+
+/// After decoding. White and black are the first two pictures of a whole sequence.
+void refuse_wrong_panel(const ScanCapture& capture, const ScanResult& result) {
+    if (!capture.partial.empty()) return;
+    const auto judge = [&](const DecodedView& view, const std::vector<GrayImage>& frames, const char* camera) {
+        if (frames.size() < 2 || view.width != frames[0].width || view.height != frames[0].height) return;
+        if (const auto problem = check_panel_ends(view, frames[0], frames[1], capture.stripes))
+            throw CheckFailedError(
+                fmt::format("the {} camera's frames do not show the sequence: {}", camera, problem->what),
+                remedy_of(*problem) + " \"check_sequence\": false in capture.json takes them as they are.");
+    };
+    judge(result.left, capture.left, "left");
+    judge(result.right, capture.right, "right");
 }
 
 /// The light must be read to this many projector pixels to judge a rig by it.
@@ -169,6 +184,7 @@ ScanResult scan_from_exposures(std::span<const ScanCapture> captures, const RigC
         if (settings.check_sequence && capture.check_sequence) refuse_wrong_sequence(capture, one);
         result.sequence_s += watch.lap_s();
         decode(capture, rig, settings.decode, one);
+        if (settings.check_sequence && capture.check_sequence) refuse_wrong_panel(capture, one);
         if (&capture == &captures.front()) {
             std::swap(result, one);
             result.sequence_s = one.sequence_s;

@@ -1,0 +1,105 @@
+#include "registration/scan/check/panel_ends.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "planning_io/types/statistics.h"
+
+namespace planlight {
+namespace {
+
+/// A decoded pixel beside one that is not.
+struct End {
+    double code = 0;
+    int x = 0, y = 0;
+    bool lit = false;  ///< the one beside it has light; else the room lights it alone
+};
+
+std::vector<End> ends_of(const DecodedView& view, const LargeArray<float>& code, const GrayImage& white,
+                         const GrayImage& black) {
+    constexpr int kBeside = 4;  // pixels: beyond the blur of an edge
+    constexpr int kLeastRoom_grey = 8;
+    constexpr double kUnlit = 0.15, kLit = 0.6, kRoomAlike = 0.6;
+    std::vector<End> ends;
+    for (int y = kBeside; y < view.height - kBeside; ++y)
+        for (int x = kBeside; x < view.width - kBeside; ++x) {
+            const std::size_t i = white.index(x, y);
+            if (std::isnan(code[i])) continue;
+            for (const auto& [dx, dy] : {std::array{kBeside, 0}, {-kBeside, 0}, {0, kBeside}, {0, -kBeside}}) {
+                const std::size_t k = white.index(x + dx, y + dy);
+                if (!std::isnan(code[k])) continue;
+                const double here = white.pixels[i] - black.pixels[i], there = white.pixels[k] - black.pixels[k];
+                if (there >= kLit * here)
+                    ends.push_back({code[i], x, y, true});
+                else if (there <= kUnlit * here && black.pixels[i] >= kLeastRoom_grey &&
+                         black.pixels[k] >= kRoomAlike * black.pixels[i])
+                    ends.push_back({code[i], x, y, false});
+            }
+        }
+    return ends;
+}
+
+/// Ends between two codes, lit or not, and whether they reach along a good part of the camera's picture.
+struct Edge {
+    std::size_t count = 0;
+    bool is_long = false;
+};
+
+Edge edge_between(const std::vector<End>& ends, double from, double to, bool lit, const DecodedView& view) {
+    constexpr std::size_t kFew = 60;
+    constexpr double kLong = 0.05;
+    std::vector<double> x, y;
+    for (const End& end : ends)
+        if (end.lit == lit && end.code >= from && end.code <= to) x.push_back(end.x), y.push_back(end.y);
+    if (x.size() < kFew) return {x.size(), false};
+    const auto reach = [](std::vector<double> values) { return quantile(values, 0.95) - quantile(values, 0.05); };
+    return {x.size(), std::hypot(reach(x), reach(y)) > kLong * std::max(view.width, view.height)};
+}
+
+/// What is wrong with one direction; empty: nothing.
+std::optional<SequenceProblem> problem_of(const DecodedView& view, const LargeArray<float>& code,
+                                          const GrayImage& white, const GrayImage& black, int size, const char* what) {
+    constexpr double kNear_px = 3, kZone_px = 20, kMostCropped = 0.05, kStraight = 0.85, kLast = 0.999;
+    std::vector<double> codes;
+    constexpr std::size_t kEvery = 7;
+    for (std::size_t i = 0; i < code.size(); i += kEvery)
+        if (!std::isnan(code[i])) codes.push_back(code[i]);
+    if (codes.size() < 1000) return std::nullopt;
+    const double last = quantile(std::move(codes), kLast);
+    const bool early = last < (1 - kMostCropped) * size;
+    if (!early && last < size - kNear_px - 1) return std::nullopt;
+    const std::vector<End> ends = ends_of(view, code, white, black);
+    if (!early) {
+        const Edge lit = edge_between(ends, size - 1 - kNear_px, size, true, view);
+        const Edge dark = edge_between(ends, size - 1 - kNear_px, size, false, view);
+        if (!lit.is_long || lit.count < 3 * dark.count) return std::nullopt;
+        return SequenceProblem{0, fmt::format("light is seen beyond the code's last {} ({})", what, size),
+                               static_cast<double>(lit.count) / static_cast<double>(ends.size()),
+                               SequenceProblem::Cause::fringes};
+    }
+    const Edge near = edge_between(ends, last - kNear_px, last + kNear_px, false, view);
+    const Edge zone = edge_between(ends, last - kZone_px, last + kZone_px, false, view);
+    if (!near.is_long || static_cast<double>(near.count) < kStraight * static_cast<double>(zone.count))
+        return std::nullopt;
+    return SequenceProblem{
+        0,
+        fmt::format("the light ends in a straight edge at {} {:.0f} by the code, and the picture has {}", what, last,
+                    size),
+        static_cast<double>(near.count) / static_cast<double>(ends.size()), SequenceProblem::Cause::fringes};
+}
+
+}  // namespace
+
+std::optional<SequenceProblem> check_panel_ends(const DecodedView& view, const GrayImage& white, const GrayImage& black,
+                                                const StripeSettings& stripes) {
+    if (stripes.begins_at_column != 0 || stripes.begins_at_row != 0) return std::nullopt;
+    if (auto problem = problem_of(view, view.column, white, black, stripes.width, "column")) return problem;
+    if (view.row.empty()) return std::nullopt;
+    return problem_of(view, view.row, white, black, stripes.height, "row");
+}
+
+}  // namespace planlight
