@@ -44,7 +44,18 @@ RigidTransform pose_to_draw(const ProjectOptions& options) {
     if (!pose.rig_from_patient)
         throw CheckFailedError(fmt::format("frame {} has no pose: {}", frame, pose.reason),
                                "Nothing is drawn without a pose; choose another frame.");
-    constexpr double kMost_mm = 2;  // beyond it a session's light goes out
+    constexpr double kMost_mm = 2;           // beyond it a session's light goes out
+    constexpr double kMostUnnoticed_mm = 3;  // beyond it a session's light is not green
+    if (!(pose.bound_95_mm > 0))
+        warn(fmt::format("how well the pose of frame {} is known stands not in the file", frame));
+    if (pose.external_reliability_mm > kMostUnnoticed_mm)
+        warn(
+            fmt::format("a marker that slipped by 1 mm could move the plan of frame {} by {:.1f} mm before the others "
+                        "show it: track with more markers in sight",
+                        frame, pose.external_reliability_mm));
+    warn(
+        "the light of recorded poses was not measured: a camera or a camera bar that was knocked since the scan moves "
+        "it without a sign (`planlight check` asks the rig, a session the light)");
     if (pose.bound_95_mm > kMost_mm || pose.markers_left + pose.markers_right < 3)
         throw CheckFailedError(fmt::format("the pose of frame {} is not known well enough: to {:.1f} mm, by {} markers "
                                            "in the left picture and {} in the right",

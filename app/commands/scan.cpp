@@ -162,7 +162,18 @@ std::string said_of_light(const ScanMovement& movement) {
     return fmt::format("; the light changed by {} meanwhile, which can look like a movement", by);
 }
 
-void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
+/// A picture that the projector draws larger, or askew, has stripes that do not add up to even light, which looks like
+/// a movement of skin in the pictures.
+std::string said_of_rig(const ScanMovement& movement, const RigState& rig) {
+    if (movement.by != ScanMovement::By::pictures || !rig.moved()) return {};
+    return fmt::format(
+        "If the head lay still, this is the cause: {}. See that no keystone correction and no scaling of the picture "
+        "is "
+        "on, else calibrate the rig again. ",
+        rig.sentence);
+}
+
+void judge_movement(const ScanMovement& movement, const RigState& rig, const ScanOptions& options) {
     if (movement.by == ScanMovement::By::nothing) {
         warn(
             "whether the patient moved during the scan is not known: too little is seen under light that is even and "
@@ -193,15 +204,16 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
         options.max_movement_mm, said_of_gamma(movement.camera_gamma), said_of_light(movement));
     if (!options.accept_movement)
         throw CheckFailedError(
-            problem,
-            said_of_light(movement).empty()
-                ? "Scan again, or take the cloud as it is with --accept-movement. If it comes back on a head that lies "
-                  "still, switch off what the cameras do to their pictures (sharpening, noise reduction)."
-                : "Let nobody switch or shade a lamp, switch off what camera and projector do "
-                  "to their pictures by themselves (sharpening, contrast, a lamp that "
-                  "follows the picture), take an exposure of whole cycles of "
-                  "the lamps' flicker, and scan again; or take the cloud as it is with "
-                  "--accept-movement.");
+            problem, said_of_rig(movement, rig) +
+                         (said_of_light(movement).empty()
+                              ? "Scan again, or take the cloud as it is with --accept-movement. If it comes back on a "
+                                "head that lies "
+                                "still, switch off what the cameras do to their pictures (sharpening, noise reduction)."
+                              : "Let nobody switch or shade a lamp, switch off what camera and projector do "
+                                "to their pictures by themselves (sharpening, contrast, a lamp that "
+                                "follows the picture), take an exposure of whole cycles of "
+                                "the lamps' flicker, and scan again; or take the cloud as it is with "
+                                "--accept-movement."));
     warn(problem);
 }
 
@@ -214,7 +226,7 @@ ScanMovement judged_movement(const std::vector<ScanCapture>& captures, const Sca
         const bool first = &capture == &captures.front();
         const ScanMovement movement = movement_in_scan(capture, rig, scan.clean.kept,
                                                        tracking_settings_for(marker_design_named(options.markers)));
-        if (first || movement.way_mm() > options.max_movement_mm) judge_movement(movement, options);
+        if (first || movement.way_mm() > options.max_movement_mm) judge_movement(movement, scan.rig, options);
         if (first || movement.way_mm() > most.way_mm()) most = movement;
     }
     return most;

@@ -20,6 +20,7 @@
 #include "planning_io/case/rig_file.h"
 #include "planning_io/files/header_text.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/statistics.h"
 #include "registration/devices/repeated_picture.h"
 #include "registration/tracking/camera_lag.h"
 #include "registration/tracking/exchanged_cameras.h"
@@ -38,6 +39,7 @@ struct TrackOptions {
 struct Reference {
     PosesOrigin origin;
     StereoFrame frame;
+    std::optional<StereoFrame> of_scan;  ///< another picture of the same scan, under the room's light alone
 };
 
 void judge_rig(const RigState& state) {
@@ -47,7 +49,7 @@ void judge_rig(const RigState& state) {
 }
 
 Reference reference_of(const TrackOptions& options, const RigCalibration& rig, const std::vector<StereoFrame>& frames) {
-    Reference reference{{name_of(rig), {}, rig}, frames.front()};
+    Reference reference{{name_of(rig), {}, rig}, frames.front(), {}};
     std::optional<RigState> found;
     if (!options.capture.empty()) {
         const ScanCapture capture = scan_capture_from(read_capture_of(rig, options.capture), options.capture);
@@ -55,6 +57,8 @@ Reference reference_of(const TrackOptions& options, const RigCalibration& rig, c
             throw InputError(options.capture, "has the left camera's pictures only",
                              "Markers need both cameras: capture with both.");
         reference.frame = {capture.left.front(), capture.right.front(), capture.began, Instant{}, 0};
+        if (capture.left.size() > 1 && capture.right.size() > 1 && capture.partial.empty())
+            reference.of_scan = StereoFrame{capture.left[1], capture.right[1], capture.began, Instant{}, 0};
         reference.origin.capture_hash = hash_of(capture);
         ScanSettings settings;
         settings.check_sequence = false;  // `scan` has judged it
@@ -173,6 +177,34 @@ struct WithoutPose {
     std::size_t first = 0, frames = 0;
 };
 
+/// How well the markers fit both cameras in another picture of the scan, px; empty where it has none that tells.
+std::optional<double> residual_at_scan_px(const Reference& reference, const MarkerDesign& design) {
+    if (!reference.of_scan) return std::nullopt;
+    PatientTracker tracker(reference.origin.rig, tracking_settings_for(design));
+    tracker.set_reference(reference.frame);
+    const TrackedPose pose = tracker.update(*reference.of_scan);
+    if (!pose.rig_from_patient) return std::nullopt;
+    return pose.residual_px;
+}
+
+/// A camera that was knocked since the scan leaves poses that agree, and are wrong: the markers fit it a little worse,
+/// in every frame alike.
+void warn_of_worse_fit(const std::vector<TrackedPose>& poses, const std::optional<double>& at_scan_px) {
+    constexpr double kWorse = 1.5, kNoise_px = 0.01;
+    if (!at_scan_px) return;
+    std::vector<double> residuals;
+    for (const TrackedPose& pose : poses)
+        if (pose.rig_from_patient) residuals.push_back(pose.residual_px);
+    const double usual_px = median(std::move(residuals));
+    if (usual_px > kWorse * *at_scan_px + kNoise_px)
+        warn(fmt::format(
+            "the markers fit the cameras worse than in the scan ({:.2f} px against {:.2f}): a camera was moved since, "
+            "or "
+            "the skin between the markers was; then the poses are farther off than they say. Look at the light on "
+            "landmarks, or scan again.",
+            usual_px, *at_scan_px));
+}
+
 /// A reason whose numbers alone differ is one; in the order in which they come.
 std::vector<WithoutPose> without_pose(const std::vector<TrackedPose>& poses) {
     std::vector<WithoutPose> found;
@@ -229,6 +261,7 @@ int run_track(const TrackOptions& options) {
     const auto found =
         std::count_if(poses.begin(), poses.end(), [](const auto& p) { return p.rig_from_patient.has_value(); });
     if (found == 0) refuse_lost(tracker, frames.front());
+    warn_of_worse_fit(poses, residual_at_scan_px(reference, design));
     const std::array<std::size_t, 2> repeats = warn_of_repeats(frames);
     const std::vector<WithoutPose> lost = without_pose(poses);
     write_poses(poses, options.out, reference.origin);

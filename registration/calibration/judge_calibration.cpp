@@ -363,6 +363,14 @@ std::vector<std::string> warnings_about(const std::vector<PoseObservation>& pose
         warnings.push_back(
             fmt::format("the projector's pixels are {:.1f} % off square: is keystone correction or digital zoom on?",
                         100 * (p->focal_x / p->focal_y - 1)));
+    constexpr double kAside = 0.05;  // of its width; upwards many projectors throw their picture, sideways few
+    if (const auto& p = bundle.rig.device(DeviceName::projector); p && std::abs(p->centre_x / p->width - 0.5) > kAside)
+        warnings.push_back(fmt::format(
+            "the projector's optical axis lies at column {:.0f} of {}: if its lens is not shifted sideways, "
+            "its patterns were of another period than capture.json says, or its picture is scaled; at the "
+            "board's distance ({:.0f} mm) its picture is {:.0f} mm wide by this calibration: measure it",
+            p->centre_x, p->width, board_distance_mm(bundle.rig),
+            board_distance_mm(bundle.rig) * p->width / p->focal_x));
     constexpr double kSquare = 0.002;  // of good boards a ten-thousandth
     if (const double stretch = board_stretch(bundle.rig); std::abs(stretch) > kSquare)
         warnings.push_back(said_of_stretch(stretch) + "; measure its width and its height");

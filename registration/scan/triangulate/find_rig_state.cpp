@@ -132,7 +132,9 @@ void judge(const Explanation& best, const std::vector<const Explanation*>& possi
         fits ? fmt::format("; light may be off by up to {:.2f} mm without a sign of it", state.hidden_light_mm)
              : "; the devices fit each other from no place";
     state.remedy = state.verdict == RigState::Verdict::corrected ? kGoOn : kStop;
-    if (contains(best.lens, RigDevice::projector)) state.remedy += kSeeFirst;
+    // A keystone correction that was switched on after the calibration is no device's place or lens: nothing fits it.
+    if (contains(best.lens, RigDevice::projector) || state.verdict == RigState::Verdict::not_trusted)
+        state.remedy += kSeeFirst;
 }
 
 /// Whether no device stands or sees so differently that it cannot have been moved by accident.
