@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <fstream>
 #include <set>
+#include <utility>
 
 #include "planning_io/dicom/fat_shift.h"
 #include "planning_io/dicom/header_values.h"
@@ -45,13 +47,30 @@ std::string defaced(vtkDICOMMetaData* meta) {
     return word.empty() ? "" : "\"" + word + "\" in its description";
 }
 
+/// MIP, MinIP or VRT as a word of a series' description; "thin, for MIP" is none.
+std::string projection_word_in(const std::string& description) {
+    std::string word, before;
+    for (const char c : lower_case(description) + " ") {
+        if (std::isalnum(static_cast<unsigned char>(c))) {
+            word += c;
+            continue;
+        }
+        const bool is_one = word == "mip" || word == "minip" || word == "vrt";
+        if (is_one && before != "for" && before != "fuer" && before != "no")
+            return word == "minip" ? "MinIP" : word == "mip" ? "MIP" : "VRT";
+        if (!word.empty()) before = std::exchange(word, {});
+    }
+    return {};
+}
+
 /// How the file says that its picture was made of several slices (DICOM PS3.3 C.7.6.1.1.2 and C.8.16.1): maximum and
 /// minimum intensity projections, subtractions.
 std::string projected(vtkDICOMMetaData* meta) {
     const std::string type = "\\" + text_at(meta, DC::ImageType) + "\\";
     for (const char* word : {"MIP", "MINIP", "MAX_IP", "MIN_IP", "PROJECTION IMAGE", "SUBTRACTION", "SUBTRACT"})
         if (type.find(fmt::format("\\{}\\", word)) != std::string::npos) return std::string("Image Type ") + word;
-    return "";
+    const std::string word = projection_word_in(text_at(meta, DC::SeriesDescription));
+    return word.empty() ? "" : "\"" + word + "\" in its description";
 }
 
 DicomSlice slice_of(vtkDICOMMetaData* meta, int frame, const std::string& name) {
@@ -120,6 +139,8 @@ bool read_header(DicomFile& file, bool& is_directory) {
                    text_at(meta, vtkDICOMTag(0x0002, 0x0002)) == "1.2.840.10008.1.3.10";
     if (is_directory) return true;
     file.series_uid = text_at(meta, DC::SeriesInstanceUID);
+    file.study_uid = text_at(meta, DC::StudyInstanceUID);
+    file.patient_hash = patient_hash(meta);
     file.modality = text_at(meta, DC::Modality);
     file.description = text_at(meta, DC::SeriesDescription);
     file.number = text_at(meta, DC::SeriesNumber);

@@ -13,7 +13,8 @@ struct DicomFile {
     std::filesystem::path path;
     std::string readable_as;  ///< where to read it from: `path`, or its inflated copy in memory
     std::string series_uid, modality, description, number, storage_class, rescale_type;
-    std::string date;  ///< of the series, else of the study: ISO 8601; empty when not said
+    std::string study_uid, patient_hash;  ///< empty when not said
+    std::string date;                     ///< of the series, else of the study: ISO 8601; empty when not said
     bool localizer = false;
     bool damaged = false;          ///< the header ends too early or makes no sense
     bool was_lossy = false;        ///< its pictures lost something once, however they are stored now
