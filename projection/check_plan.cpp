@@ -288,7 +288,7 @@ private:
         if (const auto half_turn = half_turned(points_, skin_); fits(half_turn)) {
             verdict_.stops.push_back(turned_words(*half_turn, "are"));
         } else if (const auto other = best_alternative(points_, skin_, centre); fits(other)) {
-            if (lies_evenly(points_, skin_))
+            if (small_and_even(points_, skin_))
                 verdict_.warnings.push_back(
                     turned_words(*other, "may be") +
                     ", unless it was planned on the bone: a small plan fits somewhere by chance");

@@ -107,9 +107,11 @@ bool tells_by_copies(const std::vector<Vector3d>& points) {
     return some.size() >= kFewestPoints && span_mm(some) >= kLeastSpan_mm;
 }
 
-bool lies_evenly(const std::vector<Vector3d>& points, const SkinSurface& skin) {
-    constexpr double kEven_mm = 5, kHighest_mm = 1, kDeepest_mm = 15;
-    const DepthRange range = depths_of(thinned(points), skin);
+bool small_and_even(const std::vector<Vector3d>& points, const SkinSurface& skin) {
+    constexpr double kAcross_mm = 60, kEven_mm = 2.5, kHighest_mm = 1, kDeepest_mm = 15;
+    const std::vector<Vector3d> some = thinned(points);
+    if (span_mm(some) > kAcross_mm) return false;
+    const DepthRange range = depths_of(some, skin);
     return range.spread_mm() <= kEven_mm && range.least_mm >= -kHighest_mm && range.most_mm <= kDeepest_mm;
 }
 

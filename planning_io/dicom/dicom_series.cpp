@@ -196,36 +196,6 @@ void lay_on_even_grid(Volume& volume, const std::vector<DicomSlice>& slices) {
                     slices.size(), *least, *most, count, step));
 }
 
-/// What a file is, for people: by its storage class (DICOM PS3.6 A), else by its modality.
-std::string words_of_class(const DicomFile& file) {
-    static const std::map<std::string, std::string> kWords = {
-        {"1.1", "a computed radiograph"},
-        {"3.1", "an ultrasound sequence"},
-        {"6.1", "an ultrasound picture"},
-        {"7", "a secondary capture"},
-        {"7.4", "a secondary capture"},
-        {"9.1.1", "an electrocardiogram"},
-        {"13.1.1", "an X-ray 3D angiographic image"},
-        {"13.1.2", "a cone beam CT stored as an X-ray 3D craniofacial image"},
-        {"13.1.3", "an X-ray 3D breast image"},
-        {"20", "a nuclear medicine image"},
-        {"66.4", "a segmentation"},
-        {"88.11", "a report"},
-        {"88.22", "a report"},
-        {"88.33", "a report"},
-        {"88.59", "a list of key pictures"},
-        {"104.1", "a PDF"},
-        {"128", "a PET image"},
-        {"481.2", "a radiotherapy dose"},
-        {"481.3", "a plan (RTSTRUCT)"},
-        {"481.5", "a radiotherapy plan"}};
-    const std::string before = "1.2.840.10008.5.1.4.1.1.";
-    if (file.storage_class.starts_with(before))
-        if (const auto words = kWords.find(file.storage_class.substr(before.size())); words != kWords.end())
-            return words->second;
-    return fmt::format("of modality \"{}\", storage class {}", file.modality, file.storage_class);
-}
-
 /// "CT" or "MR" as the pictures are stored; what they say besides must be the same.
 std::string modality_of(const DicomSeries& series) {
     const auto stored_as = [](const DicomFile& file) {
@@ -283,9 +253,7 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted, Slice
         if (file.damaged) throw DamagedFileError(file.path, "is damaged or cut short in its header", kCopyAgain);
     if (!series.is_volume())
         throw InputError(path, "is no CT or MR volume but " + words_of_class(series.files.front()),
-                         series.files.front().storage_class.starts_with("1.2.840.10008.5.1.4.1.1.13.1.")
-                             ? "Export it from the scanner's program as CT Image Storage."
-                             : "Give a series of CT or MR image objects.");
+                         is_x_ray_3d(series.files.front()) ? kExportAsCt : "Give a series of CT or MR image objects.");
     const std::string modality = modality_of(series);
     for (const auto& file : series.files)
         if (file.has_value_table)

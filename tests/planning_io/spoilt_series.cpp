@@ -187,10 +187,9 @@ void add_slices(std::vector<VolumeCase>& list) {
                               "no slice of the patient but made of several",
                               [=](DicomObject& o) { o.text(0x0008103e, "LO", words); }));
     for (const char* storage_class : {"13.1.1", "13.1.2", "13.1.3"})
-        list.push_back(slices(fmt::format("a 3D X-ray ({})", storage_class),
-                              "Export it from the scanner's program as CT Image Storage", [=](DicomObject& o) {
-                                  o.text(0x00080016, "UI", fmt::format("1.2.840.10008.5.1.4.1.1.{}", storage_class));
-                              }));
+        list.push_back(slices(fmt::format("a 3D X-ray ({})", storage_class), "X-ray 3D", [=](DicomObject& o) {
+            o.text(0x00080016, "UI", fmt::format("1.2.840.10008.5.1.4.1.1.{}", storage_class));
+        }));
     list.push_back(slices("no skin: one value only", "no skin", [](DicomObject& o) { fill(o, 24); }));
     list.push_back(slices("no skin: nothing but air", "no skin",
                           [](DicomObject& o) { fill(o, 24), o.elements[kPixels].bytes[64 * 64] = 30; }));
