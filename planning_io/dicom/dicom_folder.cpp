@@ -396,7 +396,7 @@ DicomSeries choose_series(const DicomFolder& folder, const fs::path& path, const
                             : "holds no series of the UID or number " + wanted + "; there is:") +
                 table_of(folder.series),
             std::ranges::any_of(folder.series, [](const DicomSeries& s) { return is_x_ray_3d(s.files.front()); })
-                ? kExportAsCt
+                ? "Export it from the scanner's program as CT Image Storage."
                 : "Name a folder with a CT or MR series of slices.");
     if (chosen.size() > 1 && wanted.empty() && chosen.front().slices() < kFewestSlices)
         throw InputError(path,

@@ -55,9 +55,8 @@ std::vector<std::filesystem::path> headers_that_crash(const std::filesystem::pat
 /// What a file is that is no CT or MR volume, by its storage class: "a PET image".
 std::string words_of_class(const DicomFile& file);
 
-/// A volume of a cone beam CT, stored as another class than CT; and what to do then.
+/// A volume of a cone beam CT, stored as another class than CT.
 bool is_x_ray_3d(const DicomFile& file);
-inline constexpr const char* kExportAsCt = "Export it from the scanner's program as CT Image Storage.";
 
 /// Whether a file is a DICOMDIR by its name: it stands for its folder.
 bool is_dicom_directory(const std::filesystem::path& file);

@@ -253,7 +253,8 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted, Slice
         if (file.damaged) throw DamagedFileError(file.path, "is damaged or cut short in its header", kCopyAgain);
     if (!series.is_volume())
         throw InputError(path, "is no CT or MR volume but " + words_of_class(series.files.front()),
-                         is_x_ray_3d(series.files.front()) ? kExportAsCt : "Give a series of CT or MR image objects.");
+                         is_x_ray_3d(series.files.front()) ? "Export it from the scanner's program as CT Image Storage."
+                                                           : "Give a series of CT or MR image objects.");
     const std::string modality = modality_of(series);
     for (const auto& file : series.files)
         if (file.has_value_table)

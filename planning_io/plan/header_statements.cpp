@@ -42,6 +42,7 @@ std::vector<std::string_view> lines_of(std::string_view text) {
 /// A name, `=` or `:`, and what follows up to the end of the line.
 struct Statement {
     std::string_view name, rest;
+    char sign = 0;
 
     std::string_view word() const { return rest.substr(0, word_end(0)); }
     /// Whether nothing more belongs to the value.
@@ -62,7 +63,7 @@ std::vector<Statement> statements_in(std::string_view words) {
     for (const std::string_view line : lines_of(words))
         for (auto at = line.find_first_of("=:"); at != std::string_view::npos; at = line.find_first_of("=:", at + 1)) {
             const auto value = line.find_first_not_of(" \t=:\"'([{<", at);
-            if (value != std::string_view::npos) found.push_back({line.substr(0, at), line.substr(value)});
+            if (value != std::string_view::npos) found.push_back({line.substr(0, at), line.substr(value), line[at]});
         }
     return found;
 }
@@ -207,7 +208,7 @@ bool names_the_unit(std::string_view name) {
 SpaceSaid space_said(std::string_view words, const fs::path& file) {
     SpaceSaid said;
     for (const Statement& statement : statements_in(words)) {
-        const bool exact = statement.name.ends_with("SPACE");
+        const bool exact = statement.name.ends_with("SPACE") && statement.sign == '=';
         if (!names_the_space(statement.name)) continue;
         const std::string code = frame_code(statement);
         const auto space = space_named(code);

@@ -223,8 +223,8 @@ TEST_F(PlanImportTest, OrdinaryWordsSayNeitherFrameNorUnit) {
     for (const char* words :
          {"# 10 cm incision planned", "# Incision length in cm: 10", "# sternocleidomastoid", "# Surgeon: M",
           "# planned by M. Ras, OR 3", "# Unit: M 3", "# unit: m Neuro", "# Frame: Leksell G", "# Frame: 3",
-          "# orientation: supine", "# Space: frontal", "# points 3 cm behind the suture", "# System: LARS",
-          "# Klinik am Ras Tor", "# time frame: 3 weeks", "# Unit: neurosurgery", "# valid in M 4",
+          "# orientation: supine", "# Space: frontal", "# WORKSPACE: OR 3", "# points 3 cm behind the suture",
+          "# System: LARS", "# Klinik am Ras Tor", "# time frame: 3 weeks", "# Unit: neurosurgery", "# valid in M 4",
           "# Coordinate system: see below"})
         EXPECT_EQ(refusal("t.csv", words + ("\n" + kTable), kLps), "") << words;
     EXPECT_EQ(
