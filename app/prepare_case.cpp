@@ -120,13 +120,16 @@ void warn_of_labels(const PlanDrawing& drawing, const PreparationWatcher& watche
 }
 
 /// The LUT, and the plan checked: of a case that has its skin.
-void finish(Preparation& done, const Volume& volume, const LutSettings& lut, const PreparationWatcher& watcher) {
+void finish(Preparation& done, const Volume& volume, const LutSettings& lut, const SaidFrame& said_frame,
+            const PreparationWatcher& watcher) {
     Case& the_case = done.prepared;
     {
         const SkinSurface surface(the_case.skin);
         const PlanVerdict of_plan =
             check_plan(the_case.plan, surface, box_of(volume), plan_checks_on(done.on_given_surface));
         add_warnings(of_plan.warnings, watcher, the_case);
+        if (const std::string doubt = doubt_of_said_frame(said_frame, surface); !doubt.empty())
+            add_warnings({doubt}, watcher, the_case);
         refuse_misfit(of_plan, done.judgement);
         done.drawing = draw_plan(the_case.plan, surface);
         add_warnings(check_names(the_case.plan, DrawingSettings{}.text_height_mm), watcher, the_case);
@@ -157,7 +160,8 @@ void check_memory_to_prepare(const Volume& volume, const LutSettings& lut) {
 }
 
 Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSettings& skin, const LutSettings& lut,
-                         const std::string& created, const PreparationWatcher& watcher, const CaseNames& names) {
+                         const std::string& created, const PreparationWatcher& watcher, const CaseNames& names,
+                         const SaidFrame& said_frame) {
     Preparation done;
     Case& the_case = done.prepared;
     tell_of_volume(volume, plan, created, names, done);
@@ -180,19 +184,20 @@ Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSetti
     done.triangulate_s = timed("surface", watcher,
                                [&](const auto& share) { the_case.skin = triangulate_skin(volume, mask, skin, share); });
     judge(volume, skin, watcher, done);
-    finish(done, volume, lut, watcher);
+    finish(done, volume, lut, said_frame, watcher);
     return done;
 }
 
 Preparation prepare_case_on(const Volume& volume, const SurfaceFile& surface, const Plan& plan, const LutSettings& lut,
-                            const std::string& created, const PreparationWatcher& watcher, const CaseNames& names) {
+                            const std::string& created, const PreparationWatcher& watcher, const CaseNames& names,
+                            const SaidFrame& said_frame) {
     Preparation done;
     done.on_given_surface = true;
     done.prepared.skin = surface.mesh;
     tell_of_volume(volume, plan, created, names, done);
     add_warnings(volume.notes, watcher, done.prepared);
     add_warnings(surface.notes, watcher, done.prepared);
-    finish(done, volume, lut, watcher);
+    finish(done, volume, lut, said_frame, watcher);
     return done;
 }
 

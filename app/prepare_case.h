@@ -50,15 +50,16 @@ struct PreparationWatcher {
 };
 
 /// PREPARE: volume -> outer skin -> mesh -> LUT, plan checked against the skin (its warnings go into the case). `names`
-/// are for people; the series' are taken from the volume. `created` is an ISO 8601 date.
+/// are for people; the series' are taken from the volume. `said_frame`: items whose frame only a person says. `created`
+/// is an ISO 8601 date.
 Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSettings& skin, const LutSettings& lut,
                          const std::string& created, const PreparationWatcher& watcher = {},
-                         const CaseNames& names = {});
+                         const CaseNames& names = {}, const SaidFrame& said_frame = {});
 
 /// The same on a surface that somebody else segmented (`mesh` as `read_surface` gives it, its `notes` become warnings).
 Preparation prepare_case_on(const Volume& volume, const SurfaceFile& surface, const Plan& plan, const LutSettings& lut,
                             const std::string& created, const PreparationWatcher& watcher = {},
-                            const CaseNames& names = {});
+                            const CaseNames& names = {}, const SaidFrame& said_frame = {});
 
 /// Throws an Error (exit 7) with the need in MiB when the memory that there is cannot be enough to prepare this volume.
 void check_memory_to_prepare(const Volume& volume, const LutSettings& lut);

@@ -281,14 +281,26 @@ private:
         if (volume_)
             centre = volume_->ct_from_voxel *
                      (Vector3d(volume_->size[0] - 1, volume_->size[1] - 1, volume_->size[2] - 1) / 2);
-        const auto other = best_alternative(points_, skin_, centre);
-        if (!other || other->fit_mm > settings_.turned_fit_mm ||
-            verdict_.median_to_skin_mm < settings_.turned_gain * std::max(other->fit_mm, kFinestFit_mm))
-            return;
-        verdict_.stops.push_back(fmt::format(
-            "the plan lies a median of {:.1f} mm off the skin; with {} it would lie within {:.1f} mm: its axes are "
+        const auto fits = [&](const std::optional<Alternative>& other) {
+            return other && other->fit_mm <= settings_.turned_fit_mm &&
+                   verdict_.median_to_skin_mm >= settings_.turned_gain * std::max(other->fit_mm, kFinestFit_mm);
+        };
+        if (const auto half_turn = half_turned(points_, skin_); fits(half_turn)) {
+            verdict_.stops.push_back(turned_words(*half_turn, "are"));
+        } else if (const auto other = best_alternative(points_, skin_, centre); fits(other)) {
+            if (small_and_even(points_, skin_))
+                verdict_.warnings.push_back(
+                    turned_words(*other, "may be") +
+                    ", unless it was planned on the bone: a small plan fits somewhere by chance");
+            else
+                verdict_.stops.push_back(turned_words(*other, "are"));
+        }
+    }
+    std::string turned_words(const Alternative& other, const char* are) const {
+        return fmt::format(
+            "the plan lies a median of {:.1f} mm off the skin; with {} it would lie within {:.1f} mm: its axes {} "
             "exchanged or flipped",
-            verdict_.median_to_skin_mm, other->words, other->fit_mm));
+            verdict_.median_to_skin_mm, other.words, other.fit_mm, are);
     }
 
     /// A few places come to lie evenly by chance; more do not.
@@ -347,6 +359,33 @@ PlanVerdict check_plan(const Plan& plan, const SkinSurface& skin, const std::opt
     for (const auto& c : plan.cut_planes) checker.look_at(c);
     for (const auto& structure : plan.risk_structures) checker.look_at(structure);
     return checker.verdict();
+}
+
+std::string doubt_of_said_frame(const SaidFrame& said, const SkinSurface& skin) {
+    constexpr double kOn_mm = 0.3, kOff_mm = 2;
+    if (!said.space) return {};
+    std::vector<Vector3d> points;
+    const auto add = [&](const auto& items) {
+        for (const auto& item : items)
+            for (const Vector3d& p : skin_points(item)) points.push_back(p);
+    };
+    add(said.items.trajectories);
+    add(said.items.boreholes);
+    add(said.items.osteotomy_lines);
+    if (points.empty() || tells_by_copies(points)) return {};
+    double given_mm = 0, turned_mm = 0;
+    for (const Vector3d& p : points) {
+        if (!p.allFinite()) return {};
+        const Vector3d turned(-p.x(), -p.y(), p.z());
+        given_mm = std::max(given_mm, (skin.nearest(p).p_in_ct - p).norm());
+        turned_mm = std::max(turned_mm, (skin.nearest(turned).p_in_ct - turned).norm());
+    }
+    if (given_mm <= kOff_mm || turned_mm > kOn_mm) return {};
+    const Space other = *said.space == Space::lps ? Space::ras : Space::lps;
+    return fmt::format(
+        "only --frame says that the plan is in {}: so it lies up to {:.1f} mm off the skin, in {} it would lie within "
+        "{:.1f} mm. Ask the program that wrote it, or the person who planned, which of the two it is",
+        name_of(*said.space), given_mm, name_of(other), turned_mm);
 }
 
 void refuse_stopped_plan(const PlanVerdict& verdict) {

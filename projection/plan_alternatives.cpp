@@ -102,10 +102,31 @@ double distance_quantile(const std::vector<Vector3d>& points, const SkinSurface&
     return *at;
 }
 
+bool tells_by_copies(const std::vector<Vector3d>& points) {
+    const auto some = thinned(points);
+    return some.size() >= kFewestPoints && span_mm(some) >= kLeastSpan_mm;
+}
+
+bool small_and_even(const std::vector<Vector3d>& points, const SkinSurface& skin) {
+    constexpr double kAcross_mm = 60, kEven_mm = 2.5, kHighest_mm = 1, kDeepest_mm = 15;
+    const std::vector<Vector3d> some = thinned(points);
+    if (span_mm(some) > kAcross_mm) return false;
+    const DepthRange range = depths_of(some, skin);
+    return range.spread_mm() <= kEven_mm && range.least_mm >= -kHighest_mm && range.most_mm <= kDeepest_mm;
+}
+
+std::optional<Alternative> half_turned(const std::vector<Vector3d>& points, const SkinSurface& skin) {
+    if (!tells_by_copies(points)) return std::nullopt;
+    const Matrix3d axes = Vector3d(-1, -1, 1).asDiagonal();
+    std::vector<Vector3d> copy = thinned(points);
+    for (Vector3d& p : copy) p = axes * p;
+    return Alternative{axes, words_of(axes), distance_quantile(copy, skin, 0.9)};
+}
+
 std::optional<Alternative> best_alternative(const std::vector<Vector3d>& points, const SkinSurface& skin,
                                             const Vector3d& centre) {
+    if (!tells_by_copies(points)) return std::nullopt;
     const auto some = thinned(points);
-    if (some.size() < kFewestPoints || span_mm(some) < kLeastSpan_mm) return std::nullopt;
     std::optional<Alternative> best;
     const auto all = axis_permutations_and_flips();
     for (std::size_t i = 1; i < all.size(); ++i)

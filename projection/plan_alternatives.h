@@ -25,6 +25,17 @@ struct Alternative {
 std::optional<Alternative> best_alternative(const std::vector<Eigen::Vector3d>& points_on_skin_in_ct,
                                             const SkinSurface& skin, const Eigen::Vector3d& centre_in_ct);
 
+/// The same for half a turn about the third axis of ct alone, which exchanges LPS and RAS.
+std::optional<Alternative> half_turned(const std::vector<Eigen::Vector3d>& points_on_skin_in_ct,
+                                       const SkinSurface& skin);
+
+/// Whether there are points enough, and far enough apart, for a copy that fits to say anything.
+bool tells_by_copies(const std::vector<Eigen::Vector3d>& points_on_skin_in_ct);
+
+/// Whether all of it lies within 60 mm, and under the skin at about one depth, as what was planned on bone does: a copy
+/// that fits may do so by chance.
+bool small_and_even(const std::vector<Eigen::Vector3d>& points_on_skin_in_ct, const SkinSurface& skin);
+
 /// How deep points lie under the skin, mm; negative over it.
 struct DepthRange {
     double least_mm = 0, most_mm = 0;

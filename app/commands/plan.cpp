@@ -34,6 +34,7 @@ struct PlanOptions {
 /// What the plan is checked against: nothing, a volume, or a case.
 struct Patient {
     std::string code, volume_hash, frame_of_reference_uid;
+    SeriesIdentity identity;  ///< of the volume
     std::optional<SkinSurface> skin;
     std::optional<VolumeBox> box;
     std::vector<RiskStructure> risk_structures;  ///< of the case
@@ -55,8 +56,8 @@ Patient read_patient(const PlanOptions& options) {
     }
     if (!options.volume.empty()) {
         // Of a case the hash says whether it was laid onto an even grid.
-        const Volume volume =
-            read_volume(options.volume, options.series_uid, patient.known ? SliceGaps::resampled : SliceGaps::refused);
+        const Volume volume = read_volume(options.volume, options.series_uid,
+                                          patient.known ? SliceGaps::resampled : SliceGaps::refused, &patient.identity);
         const std::string hash = hash_of(volume);
         if (patient.known && patient.volume_hash != hash)
             throw InputError(options.volume,
@@ -202,16 +203,18 @@ void write(const PlanImport& read, const Patient& patient, const PlanOptions& op
 
 int run_plan(const PlanOptions& options) {
     const Patient patient = read_patient(options);
-    const auto settings = plan_settings(options.frame, options.accept_frame,
-                                        patient.known ? std::optional(patient.frame_of_reference_uid) : std::nullopt);
-    PlanImport read;
-    for (const auto& file : options.files) append(read, import_plan(file, settings));
+    const auto settings =
+        plan_settings(options.frame, options.accept_frame,
+                      patient.known ? std::optional(patient.frame_of_reference_uid) : std::nullopt, patient.identity);
+    PlanImport read = import_plan(options.files, settings);
     add_risk_structures(read, options.risk, options.risk_frame, settings);
     if (options.risk.empty()) read.plan.risk_structures = patient.risk_structures;
     for (const auto& note : read.notes) warn(note);
     PlanVerdict verdict;
     if (patient.skin) {
         verdict = check_plan(read.plan, *patient.skin, patient.box, plan_checks_on(patient.on_given_surface));
+        if (std::string doubt = doubt_of_said_frame(read.said_frame, *patient.skin); !doubt.empty())
+            verdict.warnings.push_back(std::move(doubt));
         for (const auto& warning : verdict.warnings) warn(warning);
         refuse_stopped_plan(verdict);
     } else if (patient.box) {

@@ -11,13 +11,15 @@
 namespace planlight {
 
 /// What --frame and --accept-frame say, and the CT's own frame of reference (not given: there is no CT to check
-/// against).
+/// against) and whose it is.
 inline PlanImportSettings plan_settings(const std::string& frame, const std::string& accepted_uid,
-                                        const std::optional<std::string>& uid_of_ct) {
+                                        const std::optional<std::string>& uid_of_ct,
+                                        const SeriesIdentity& volume = {}) {
     PlanImportSettings settings;
     if (!frame.empty()) settings.space = space_named(frame);
     settings.frame_of_reference_uid = uid_of_ct;
     settings.accepted_frame_uid = accepted_uid;
+    settings.volume = volume;
     return settings;
 }
 

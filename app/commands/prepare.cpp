@@ -86,15 +86,17 @@ void make_anonymous(Inputs& in, const PrepareOptions& options) {
 
 Inputs read_inputs(const PrepareOptions& options) {
     Inputs in;
-    in.volume =
-        read_volume(options.volume, options.series_uid, options.resample ? SliceGaps::resampled : SliceGaps::refused);
+    SeriesIdentity whose;
+    in.volume = read_volume(options.volume, options.series_uid,
+                            options.resample ? SliceGaps::resampled : SliceGaps::refused, &whose);
     const std::string& frame_uid = in.volume.frame_of_reference_uid;
-    const PlanImportSettings said = plan_settings(options.frame, options.accept_frame, frame_uid);
+    const PlanImportSettings said = plan_settings(options.frame, options.accept_frame, frame_uid, whose);
     in.plan = import_plan(options.plan, said);
     add_risk_structures(in.plan, options.risk, options.risk_frame, said);
     if (!options.surface.empty()) {
         in.surface = read_surface(
-            options.surface, {plan_settings(options.surface_frame, options.accept_frame, frame_uid), options.segment});
+            options.surface,
+            {plan_settings(options.surface_frame, options.accept_frame, frame_uid, whose), options.segment});
         const SurfaceFit fit = check_surface_fits(in.surface->mesh, in.volume, options.surface);
         if (std::string doubt = doubt_of(fit, options.surface); !doubt.empty())
             in.surface->notes.push_back(std::move(doubt));
@@ -128,10 +130,10 @@ Preparation prepare(const Inputs& in, const PrepareOptions& options, ProgressBar
                              picture.string()));
     };
     const PreparationWatcher watcher{bar.callback(), told, show_thresholds};
-    Preparation done =
-        in.surface
-            ? prepare_case_on(in.volume, *in.surface, in.plan.plan, lut, iso_date_now(), watcher, names_of(options))
-            : prepare_case(in.volume, in.plan.plan, skin, lut, iso_date_now(), watcher, names_of(options));
+    Preparation done = in.surface ? prepare_case_on(in.volume, *in.surface, in.plan.plan, lut, iso_date_now(), watcher,
+                                                    names_of(options), in.plan.said_frame)
+                                  : prepare_case(in.volume, in.plan.plan, skin, lut, iso_date_now(), watcher,
+                                                 names_of(options), in.plan.said_frame);
     done.prepared.warnings.insert(done.prepared.warnings.end(), in.plan.notes.begin(), in.plan.notes.end());
     return done;
 }

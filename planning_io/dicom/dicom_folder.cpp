@@ -9,8 +9,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <fstream>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "planning_io/dicom/fat_shift.h"
 #include "planning_io/dicom/header_values.h"
@@ -45,13 +48,30 @@ std::string defaced(vtkDICOMMetaData* meta) {
     return word.empty() ? "" : "\"" + word + "\" in its description";
 }
 
+/// MIP, MinIP or VRT as a word of a series' description; "thin, for MIP" is none.
+std::string projection_word_in(const std::string& description) {
+    std::string word, before;
+    for (const char c : lower_case(description) + " ") {
+        if (std::isalnum(static_cast<unsigned char>(c))) {
+            word += c;
+            continue;
+        }
+        const bool is_one = word == "mip" || word == "minip" || word == "vrt";
+        if (is_one && before != "for" && before != "fuer" && before != "no")
+            return word == "minip" ? "MinIP" : word == "mip" ? "MIP" : "VRT";
+        if (!word.empty()) before = std::exchange(word, {});
+    }
+    return {};
+}
+
 /// How the file says that its picture was made of several slices (DICOM PS3.3 C.7.6.1.1.2 and C.8.16.1): maximum and
 /// minimum intensity projections, subtractions.
 std::string projected(vtkDICOMMetaData* meta) {
     const std::string type = "\\" + text_at(meta, DC::ImageType) + "\\";
     for (const char* word : {"MIP", "MINIP", "MAX_IP", "MIN_IP", "PROJECTION IMAGE", "SUBTRACTION", "SUBTRACT"})
         if (type.find(fmt::format("\\{}\\", word)) != std::string::npos) return std::string("Image Type ") + word;
-    return "";
+    const std::string word = projection_word_in(text_at(meta, DC::SeriesDescription));
+    return word.empty() ? "" : "\"" + word + "\" in its description";
 }
 
 DicomSlice slice_of(vtkDICOMMetaData* meta, int frame, const std::string& name) {
@@ -120,6 +140,8 @@ bool read_header(DicomFile& file, bool& is_directory) {
                    text_at(meta, vtkDICOMTag(0x0002, 0x0002)) == "1.2.840.10008.1.3.10";
     if (is_directory) return true;
     file.series_uid = text_at(meta, DC::SeriesInstanceUID);
+    file.study_uid = text_at(meta, DC::StudyInstanceUID);
+    file.patient_hash = patient_hash(meta);
     file.modality = text_at(meta, DC::Modality);
     file.description = text_at(meta, DC::SeriesDescription);
     file.number = text_at(meta, DC::SeriesNumber);
@@ -214,9 +236,10 @@ std::string table_of(const std::vector<DicomSeries>& list) {
     for (const auto& s : list)
         table += fmt::format("\n  {}  {}  {}  {}  {}  \"{}\"{}", s.number.empty() ? "-" : s.number, s.modality,
                              s.slices(), spacing_text(s), s.uid, s.description,
-                             s.slices() == 0 ? " (no pictures)"
-                             : s.is_volume() ? ""
-                                             : " (no CT or MR volume)");
+                             s.slices() == 0                ? " (no pictures)"
+                             : s.is_volume()                ? ""
+                             : is_x_ray_3d(s.files.front()) ? " (" + words_of_class(s.files.front()) + ")"
+                                                            : " (no CT or MR volume)");
     return table;
 }
 
@@ -261,6 +284,39 @@ bool DicomSeries::is_volume() const {
                        [](const DicomFile& f) { return kVolumeClasses.contains(f.storage_class); }) &&
            std::any_of(files.begin(), files.end(),
                        [](const DicomFile& f) { return !f.localizer && !f.slices.empty(); });
+}
+
+std::string words_of_class(const DicomFile& file) {
+    static const std::map<std::string, std::string> kWords = {
+        {"1.1", "a computed radiograph"},
+        {"3.1", "an ultrasound sequence"},
+        {"6.1", "an ultrasound picture"},
+        {"7", "a secondary capture"},
+        {"7.4", "a secondary capture"},
+        {"9.1.1", "an electrocardiogram"},
+        {"13.1.1", "an X-ray 3D angiographic image"},
+        {"13.1.2", "a cone beam CT stored as an X-ray 3D craniofacial image"},
+        {"13.1.3", "an X-ray 3D breast image"},
+        {"20", "a nuclear medicine image"},
+        {"66.4", "a segmentation"},
+        {"88.11", "a report"},
+        {"88.22", "a report"},
+        {"88.33", "a report"},
+        {"88.59", "a list of key pictures"},
+        {"104.1", "a PDF"},
+        {"128", "a PET image"},
+        {"481.2", "a radiotherapy dose"},
+        {"481.3", "a plan (RTSTRUCT)"},
+        {"481.5", "a radiotherapy plan"}};
+    const std::string before = "1.2.840.10008.5.1.4.1.1.";
+    if (file.storage_class.starts_with(before))
+        if (const auto words = kWords.find(file.storage_class.substr(before.size())); words != kWords.end())
+            return words->second;
+    return fmt::format("of modality \"{}\", storage class {}", file.modality, file.storage_class);
+}
+
+bool is_x_ray_3d(const DicomFile& file) {
+    return file.storage_class.starts_with("1.2.840.10008.5.1.4.1.1.13.1.");
 }
 
 bool is_dicom_directory(const fs::path& file) {
@@ -334,11 +390,14 @@ DicomSeries choose_series(const DicomFolder& folder, const fs::path& path, const
             path, "holds no DICOM images",
             "Name a folder with a CT or MR series, or a file: .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, .inv3.");
     if (chosen.empty())
-        throw InputError(path,
-                         (wanted.empty() ? "holds no CT or MR volume; there is:"
-                                         : "holds no series of the UID or number " + wanted + "; there is:") +
-                             table_of(folder.series),
-                         "Name a folder with a CT or MR series of slices.");
+        throw InputError(
+            path,
+            (wanted.empty() ? "holds no CT or MR volume; there is:"
+                            : "holds no series of the UID or number " + wanted + "; there is:") +
+                table_of(folder.series),
+            std::ranges::any_of(folder.series, [](const DicomSeries& s) { return is_x_ray_3d(s.files.front()); })
+                ? "Export it from the scanner's program as CT Image Storage."
+                : "Name a folder with a CT or MR series of slices.");
     if (chosen.size() > 1 && wanted.empty() && chosen.front().slices() < kFewestSlices)
         throw InputError(path,
                          fmt::format("holds no CT or MR volume of {} slices or more; there is:", kFewestSlices) +

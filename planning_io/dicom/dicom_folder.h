@@ -13,7 +13,8 @@ struct DicomFile {
     std::filesystem::path path;
     std::string readable_as;  ///< where to read it from: `path`, or its inflated copy in memory
     std::string series_uid, modality, description, number, storage_class, rescale_type;
-    std::string date;  ///< of the series, else of the study: ISO 8601; empty when not said
+    std::string study_uid, patient_hash;  ///< empty when not said
+    std::string date;                     ///< of the series, else of the study: ISO 8601; empty when not said
     bool localizer = false;
     bool damaged = false;          ///< the header ends too early or makes no sense
     bool was_lossy = false;        ///< its pictures lost something once, however they are stored now
@@ -50,6 +51,12 @@ DicomFolder find_dicom(const std::filesystem::path& folder, int depth,
 /// The DICOM files below a folder whose header brings the parser down, each tried in a child process of its own: for
 /// when the whole folder did.
 std::vector<std::filesystem::path> headers_that_crash(const std::filesystem::path& folder, int depth);
+
+/// What a file is that is no CT or MR volume, by its storage class: "a PET image".
+std::string words_of_class(const DicomFile& file);
+
+/// A volume of a cone beam CT, stored as another class than CT.
+bool is_x_ray_3d(const DicomFile& file);
 
 /// Whether a file is a DICOMDIR by its name: it stands for its folder.
 bool is_dicom_directory(const std::filesystem::path& file);

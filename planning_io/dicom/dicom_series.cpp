@@ -64,7 +64,10 @@ fs::path damaged_file_of(const DicomSeries& series, const fs::path& path) {
 }
 
 /// The affine from the slices' own positions must agree with vtk-dicom's reading of them: two readings, one geometry.
-void check_against_reader(vtkDICOMReader* reader, const Volume& volume, const fs::path& path) {
+void check_against_reader(vtkDICOMReader* reader, const Volume& volume, double axes_off, const fs::path& path) {
+    double within_mm = 0.1;
+    for (std::size_t axis = 0; axis < 2; ++axis)  // the reader leaves coarsely written directions as they are
+        within_mm += axes_off * volume.size[axis] * volume.spacing_mm()[static_cast<Eigen::Index>(axis)];
     const double* spacing = reader->GetOutput()->GetSpacing();
     for (int corner = 0; corner < 8; ++corner) {
         const Eigen::Vector3d voxel((corner & 1) * (volume.size[0] - 1), ((corner >> 1) & 1) * (volume.size[1] - 1),
@@ -72,8 +75,10 @@ void check_against_reader(vtkDICOMReader* reader, const Volume& volume, const fs
         const std::array<double, 4> in{voxel.x() * spacing[0], voxel.y() * spacing[1], voxel.z() * spacing[2], 1};
         std::array<double, 4> out{};
         reader->GetPatientMatrix()->MultiplyPoint(in.data(), out.data());
-        if (!((volume.ct_from_voxel * voxel - Eigen::Vector3d(out[0], out[1], out[2])).norm() < 0.1))
-            throw DamagedFileError(path, "two readings of its geometry disagree by more than 0.1 mm", kCopyAgain);
+        if (!((volume.ct_from_voxel * voxel - Eigen::Vector3d(out[0], out[1], out[2])).norm() < within_mm))
+            throw DamagedFileError(
+                path, fmt::format("two readings of its geometry disagree by more than {:.1f} mm", within_mm),
+                kCopyAgain);
     }
 }
 
@@ -128,6 +133,12 @@ void note_geometry(const DicomSeries& series, Volume& volume) {
             fmt::format("the gantry was tilted by {:.1f} degrees: the slices stay where they were, sheared",
                         tilt * 180 / std::numbers::pi));
     const auto slices = series.all_slices();
+    if (const double off = axes_off(slices.front()); off > kAsWritten)
+        volume.notes.push_back(
+            fmt::format("the directions of its rows and columns are written in few digits (off by {:.1g}): they were "
+                        "made of length "
+                        "1 and perpendicular",
+                        off));
     note_lost_tilt(slices, volume);
     if (std::any_of(series.files.begin(), series.files.end(), [](const DicomFile& f) { return f.was_lossy; }) ||
         std::any_of(slices.begin(), slices.end(),
@@ -185,32 +196,6 @@ void lay_on_even_grid(Volume& volume, const std::vector<DicomSlice>& slices) {
                     slices.size(), *least, *most, count, step));
 }
 
-/// What a file is, for people: by its storage class (DICOM PS3.6 A), else by its modality.
-std::string words_of_class(const DicomFile& file) {
-    static const std::map<std::string, std::string> kWords = {{"1.1", "a computed radiograph"},
-                                                              {"3.1", "an ultrasound sequence"},
-                                                              {"6.1", "an ultrasound picture"},
-                                                              {"7", "a secondary capture"},
-                                                              {"7.4", "a secondary capture"},
-                                                              {"9.1.1", "an electrocardiogram"},
-                                                              {"20", "a nuclear medicine image"},
-                                                              {"66.4", "a segmentation"},
-                                                              {"88.11", "a report"},
-                                                              {"88.22", "a report"},
-                                                              {"88.33", "a report"},
-                                                              {"88.59", "a list of key pictures"},
-                                                              {"104.1", "a PDF"},
-                                                              {"128", "a PET image"},
-                                                              {"481.2", "a radiotherapy dose"},
-                                                              {"481.3", "a plan (RTSTRUCT)"},
-                                                              {"481.5", "a radiotherapy plan"}};
-    const std::string before = "1.2.840.10008.5.1.4.1.1.";
-    if (file.storage_class.starts_with(before))
-        if (const auto words = kWords.find(file.storage_class.substr(before.size())); words != kWords.end())
-            return words->second;
-    return fmt::format("of modality \"{}\", storage class {}", file.modality, file.storage_class);
-}
-
 /// "CT" or "MR" as the pictures are stored; what they say besides must be the same.
 std::string modality_of(const DicomSeries& series) {
     const auto stored_as = [](const DicomFile& file) {
@@ -259,7 +244,7 @@ std::vector<fs::path> crashing_files_of(const fs::path& path) {
 }
 
 Volume parse_dicom_series(const fs::path& path, const std::string& wanted, SliceGaps gaps,
-                          const std::vector<fs::path>& unreadable) {
+                          const std::vector<fs::path>& unreadable, SeriesIdentity* identity) {
     const auto [folder, depth] = place_to_search(path);
     const DicomFolder found = find_dicom(folder, depth, unreadable);
     DicomSeries series = choose_series(found, path, wanted);
@@ -268,7 +253,8 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted, Slice
         if (file.damaged) throw DamagedFileError(file.path, "is damaged or cut short in its header", kCopyAgain);
     if (!series.is_volume())
         throw InputError(path, "is no CT or MR volume but " + words_of_class(series.files.front()),
-                         "Give a series of CT or MR image objects.");
+                         is_x_ray_3d(series.files.front()) ? "Export it from the scanner's program as CT Image Storage."
+                                                           : "Give a series of CT or MR image objects.");
     const std::string modality = modality_of(series);
     for (const auto& file : series.files)
         if (file.has_value_table)
@@ -301,6 +287,8 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted, Slice
         slices.push_back(of.slices.at(frame));
         meaning.push_back({slices.back().slope, slices.back().intercept, of.has_padding, of.padding, of.padding_limit});
     }
+    const DicomFile& first = series.files.front();
+    if (identity) *identity = {first.patient_hash, first.study_uid, series.uid};
     Volume volume;
     volume.size = {slices[0].columns, slices[0].rows, static_cast<int>(slices.size())};
     volume.ct_from_voxel = ct_from_voxel_of(slices);
@@ -319,7 +307,7 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted, Slice
     if (localizers > 0)
         volume.notes.push_back("left aside: " + counted(localizers, "localizer picture") + " of the series");
     note_geometry(series, volume);
-    check_against_reader(reader, volume, path);
+    check_against_reader(reader, volume, axes_off(slices.front()), path);
     copy_stored_values(reader->GetOutput(), volume, path);
     rescale(volume, meaning, series.files.front().rescale_type, slices.front().has_rescale);
     lay_on_even_grid(volume, slices);

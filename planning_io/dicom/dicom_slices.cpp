@@ -16,7 +16,7 @@ constexpr double kEven_mm = 0.01;
 constexpr double kEvenPlace_mm = 0.05, kEvenShare = 0.02;  // of a slice on the even grid: mm, and of the step
 constexpr double kLongestStep_mm = 20;
 constexpr double kSameDirection = 1e-4;
-constexpr double kOrthonormal = 1e-4;
+constexpr double kOrthonormal = 1e-3;  // of cosines that are written with three decimals
 constexpr const char* kOneSeries = "Export one series of one patient into a folder of its own.";
 constexpr const char* kExportAgain = "Export the series again from the scanner or the archive.";
 
@@ -216,11 +216,23 @@ bool is_even(const std::vector<DicomSlice>& slices) {
     return unevenness_of(slices) <= std::max(kEvenPlace_mm, kEvenShare * *middle);
 }
 
+double axes_off(const DicomSlice& s) {
+    return std::max({std::abs(s.row_direction.norm() - 1), std::abs(s.column_direction.norm() - 1),
+                     std::abs(s.row_direction.dot(s.column_direction))});
+}
+
 Eigen::Affine3d ct_from_voxel_of(const std::vector<DicomSlice>& slices) {
     const DicomSlice& first = slices.front();
     Eigen::Affine3d affine = Eigen::Affine3d::Identity();
-    affine.linear().col(0) = first.column_spacing_mm * first.row_direction;
-    affine.linear().col(1) = first.row_spacing_mm * first.column_direction;
+    Eigen::Vector3d row = first.row_direction, column = first.column_direction;
+    if (axes_off(first) > kAsWritten) {  // each turned by as much as the other
+        const Eigen::Vector3d r = row.normalized(), c = column.normalized(), sum = (r + c).normalized(),
+                              difference = (r - c).normalized();
+        row = (sum + difference) * std::sqrt(0.5);
+        column = (sum - difference) * std::sqrt(0.5);
+    }
+    affine.linear().col(0) = first.column_spacing_mm * row;
+    affine.linear().col(1) = first.row_spacing_mm * column;
     affine.linear().col(2) =
         (slices.back().position_in_ct - first.position_in_ct) / static_cast<double>(slices.size() - 1);
     affine.translation() = first.position_in_ct;

@@ -54,7 +54,14 @@ double unevenness_of(const std::vector<DicomSlice>& slices);
 /// Whether each slice lies within 0.05 mm, or 2 % of the step, of its place on that grid.
 bool is_even(const std::vector<DicomSlice>& slices);
 
+/// How far the directions of rows and columns are from length 1, and the cosine between them from 0: the greatest.
+double axes_off(const DicomSlice& slice);
+
+/// Directions that are off by no more are taken as they are written.
+inline constexpr double kAsWritten = 1e-4;
+
 /// The affine of slices in this order (they have no fault): i along a row, j along a column, k from slice to slice.
+/// Directions that are written in few digits are made of length 1 and perpendicular.
 Eigen::Affine3d ct_from_voxel_of(const std::vector<DicomSlice>& slices);
 
 /// The angle between the slices' normal and the way from slice to slice, radians: a tilted gantry's.

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "planning_io/dicom/dicom_slices.h"
+#include "planning_io/files/content_hash.h"
 #include "planning_io/files/header_text.h"
 
 namespace planlight {
@@ -16,6 +17,12 @@ std::string plain(std::string text) {
 
 std::string text_at(vtkDICOMMetaData* meta, vtkDICOMTag tag, int frame) {
     return plain(meta->Get(0, frame, tag).AsString());
+}
+
+std::string patient_hash(vtkDICOMMetaData* meta) {
+    std::string id = text_at(meta, DC::PatientID);
+    id.erase(0, id.find_first_not_of(' '));
+    return id.empty() ? id : content_hash(id);
 }
 
 std::array<double, 6> numbers_at(vtkDICOMMetaData* meta, int frame, vtkDICOMTag tag, unsigned count) {

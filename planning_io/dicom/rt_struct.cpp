@@ -114,6 +114,20 @@ std::vector<RtRoi> rois_of(vtkDICOMMetaData* meta, const fs::path& file) {
     return rois;
 }
 
+std::vector<std::string> referenced_series_of(const vtkDICOMSequence& frames) {
+    std::vector<std::string> uids;
+    for (std::size_t f = 0; f < frames.GetNumberOfItems(); ++f) {
+        const vtkDICOMSequence studies = frames.GetItem(f).Get(DC::RTReferencedStudySequence);
+        for (std::size_t s = 0; s < studies.GetNumberOfItems(); ++s) {
+            const vtkDICOMSequence series = studies.GetItem(s).Get(DC::RTReferencedSeriesSequence);
+            for (std::size_t i = 0; i < series.GetNumberOfItems(); ++i)
+                if (std::string uid = text(series.GetItem(i).Get(DC::SeriesInstanceUID)); !uid.empty())
+                    uids.push_back(std::move(uid));
+        }
+    }
+    return uids;
+}
+
 void parse(Parcel& parcel, const fs::path& file) {
     if (!dicom_nests_to_its_end(read_whole(file))) throw DamagedFileError(file, "is damaged or cut short", kCopyAgain);
     vtkNew<vtkDICOMMetaData> meta;
@@ -130,6 +144,13 @@ void parse(Parcel& parcel, const fs::path& file) {
     for (auto roi = rois.rbegin(); roi != rois.rend(); ++roi)
         if (!roi->frame_of_reference_uid.empty()) frame = roi->frame_of_reference_uid;
     parcel.put(frame);
+    for (const std::string& said :
+         {patient_hash(meta), text(meta->Get(DC::StudyInstanceUID)), text(meta->Get(DC::SeriesInstanceUID))})
+        parcel.put(said);
+    const std::vector<std::string> referenced = referenced_series_of(frames);
+    parcel.put(static_cast<std::uint64_t>(referenced.size()));
+    for (const std::string& uid : referenced) parcel.put(uid);
+    parcel.put(text(meta->Get(DC::Manufacturer)) == "Planlight");
     parcel.put(static_cast<std::uint64_t>(rois.size()));
     for (const RtRoi& roi : rois) {
         for (const auto& said : {roi.name, roi.description, roi.frame_of_reference_uid, roi.interpreted_type})
@@ -190,6 +211,11 @@ RtStruct read_rt_struct(const fs::path& file) {
     Parcel parcel = parse_in_child(file, {"DICOM file"}, [&](Parcel& p) { parse(p, file); });
     RtStruct set;
     set.frame_of_reference_uid = parcel.get_text();
+    for (std::string* said : {&set.identity.patient_hash, &set.identity.study_uid, &set.identity.series_uid})
+        *said = parcel.get_text();
+    set.referenced_series.resize(parcel.get<std::uint64_t>());
+    for (std::string& uid : set.referenced_series) uid = parcel.get_text();
+    set.ours = parcel.get<bool>();
     set.rois = unpack(parcel);
     if (set.rois.empty()) throw InputError(file, "names no ROI", "Export the structure set with the plan's contours.");
     for (const RtRoi& roi : set.rois)

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "planning_io/types/series_identity.h"
+
 namespace planlight {
 
 /// One contour as it stands in the file: "CLOSED_PLANAR" ..., and x y z x y z ... in ct, mm.
@@ -28,8 +30,11 @@ struct RtRoi {
 std::string no_organ(const RtRoi& roi);
 
 struct RtStruct {
-    std::string frame_of_reference_uid;  ///< of all its ROIs
-    std::vector<RtRoi> rois;             ///< one at least
+    SeriesIdentity identity;                     ///< its patient, and its own study and series
+    std::vector<std::string> referenced_series;  ///< UIDs of the series that it was drawn on, as far as it says
+    bool ours = false;                           ///< written by Planlight, whose Patient ID is the case's code
+    std::string frame_of_reference_uid;          ///< of all its ROIs
+    std::vector<RtRoi> rois;                     ///< one at least
 };
 
 /// True when the first 4 KiB of the file name the class of RT Structure Sets.

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "planning_io/files/header_text.h"
+#include "planning_io/plan/header_statements.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/plan/plan_settings.h"
 #include "planning_io/types/error.h"
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
 constexpr const char* kSaveAgain = "Save the points from 3D Slicer as .mrk.json.";
+constexpr const char* kSayIt = "Save the points from 3D Slicer as .mrk.json";
 constexpr double kMaxCoordinate_mm = 5000;
 
 std::string trimmed(std::string_view text) {
@@ -30,30 +32,48 @@ std::string trimmed(std::string_view text) {
 /// The lines "# key = value" at the head of the file.
 struct Header {
     bool slicer3 = false;
+    std::string comments;
     std::map<std::string, std::string> values;
     std::map<std::string, std::size_t> column;
 };
 
-std::optional<Space> space_of(const Header& header, const fs::path& file, std::vector<std::string>& notes) {
-    const auto given = header.values.find("CoordinateSystem");
+constexpr const char* kCoordinateSystem = "CoordinateSystem";
+
+std::optional<Space> space_of(const Header& header, const fs::path& file) {
+    const auto given = header.values.find(kCoordinateSystem);
     if (given != header.values.end()) {
-        const std::string& word = given->second;
-        if (word == "0" || word == "RAS") return Space::ras;
-        if (word == "1" || word == "LPS") return Space::lps;
-        if (word == "2" || word == "IJK")
-            throw InputError(file, "is in voxels (CoordinateSystem = " + word + "), not in mm", kSaveAgain);
-        throw InputError(file, "says CoordinateSystem = \"" + word + "\", which is none", kSaveAgain);
+        const std::string word = lower_case(given->second);
+        if (word == "0" || word == "ras") return Space::ras;
+        if (word == "1" || word == "lps") return Space::lps;
+        if (word == "2" || word == "ijk")
+            throw InputError(file, "is in voxels (CoordinateSystem = " + given->second + "), not in mm", kSaveAgain);
+        throw InputError(file, "says CoordinateSystem = \"" + given->second + "\", which is none", kSaveAgain);
     }
-    if (!header.slicer3) return std::nullopt;
-    notes.push_back(file.filename().string() + " is a list of Slicer 3, which is always RAS");
-    return Space::ras;
+    return header.slicer3 ? std::optional(Space::ras) : std::nullopt;
+}
+
+/// Also from comments in other words.
+SpaceSaid space_said_by(const Header& header, const fs::path& file) {
+    const std::optional<Space> space = space_of(header, file);
+    SpaceSaid said = space_said(header.comments, file);
+    if (space && said.space && *space != *said.space)
+        throw InputError(file, "says both that it is in LPS and that it is in RAS", kSaveAgain);
+    if (space) said.space = space;
+    return said;
 }
 
 void read_header_line(Header& header, const std::string& line, const fs::path& file) {
     if (line.starts_with("# Fiducial List file")) header.slicer3 = true;
-    const auto equals = line.find('=');
+    header.comments += line + '\n';
+    const auto equals = line.find_first_of("=:");
     if (equals == std::string::npos) return;
-    const std::string key = trimmed(line.substr(1, equals - 1)), value = trimmed(line.substr(equals + 1));
+    std::string key = trimmed(line.substr(1, equals - 1));
+    const std::string value = trimmed(line.substr(equals + 1));
+    if (std::string letters = lower_case(key);
+        std::erase_if(letters, [](char c) { return c == ' ' || c == '_'; }), letters == "coordinatesystem")
+        key = kCoordinateSystem;
+    else if (line[equals] == ':')
+        return;
     const auto [at, fresh] = header.values.emplace(key, value);
     if (!fresh && at->second != value) throw InputError(file, "says \"" + key + "\" twice, differently", kSaveAgain);
     if (key != "columns") return;
@@ -153,13 +173,18 @@ PlanImport read_fcsv(const std::string& content, const fs::path& file, const Pla
                 if (!header.column.contains(column))
                     throw InputError(file, fmt::format("names no column \"{}\" in a line \"# columns = ...\"", column),
                                      kSaveAgain);
-            space = settled_space(space_of(header, file, read.notes), settings.space, file,
-                                  "Save the points from 3D Slicer as .mrk.json");
+            space = space_of_plan(space_said_by(header, file), settings, file, kSayIt, read);
+            if (header.slicer3)
+                read.notes.push_back(file.filename().string() + " is a list of Slicer 3, which is always RAS");
         }
         const Row row(header, split_fields(line, ','), number, file);
         read.plan.boreholes.push_back(
             borehole_of(row, *space, fmt::format("{}-{}", plan_name_of(file), read.plan.boreholes.size() + 1)));
     }
+    if (space && space_of_plan(space_said_by(header, file), settings, file, kSayIt, read) != *space)
+        throw InputError(file, "says another coordinate system below its first point", kSaveAgain);
+    if (unit_said(header.comments, file, "write the line \"# units=mm\" before the points").value_or(1) != 1)
+        throw InputError(file, "is in um, not in mm", kSaveAgain);
     if (const auto count = header.values.find("numPoints");
         count != header.values.end() && number_in(count->second) != static_cast<double>(read.plan.boreholes.size()))
         read.notes.push_back(fmt::format("{} announces {} points and holds {}", file.filename().string(), count->second,

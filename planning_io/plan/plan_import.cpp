@@ -99,7 +99,7 @@ PlanImport read_markups(const std::string& content, const fs::path& file, const 
     const JsonValue markups = root.at("markups");
     for (std::size_t i = 0; i < markups.size(); ++i) {
         append_markup(read.plan, markups[i], minor >= 3, plan_name_of(file));
-        settled_space(space_named(markups[i].at("coordinateSystem").text()), settings.space, file, "");
+        space_of_plan(space_named(markups[i].at("coordinateSystem").text()), settings, file, "", read);
         if (!markups[i].at("type").text().ends_with("Curve")) continue;
         if (std::string note = note_on_curve(read.plan.osteotomy_lines.back()); !note.empty())
             read.notes.push_back(std::move(note));
@@ -126,7 +126,7 @@ void refuse_known_others(const std::string& content, const fs::path& file) {
     if (ends(file, ".vtm")) refuse("a list of surfaces", "Name the .vtp files one by one.");
 }
 
-PlanImport read_one(const fs::path& file, const PlanImportSettings& settings) {
+PlanImport read_kind(const fs::path& file, const PlanImportSettings& settings) {
     const std::string content = read_whole(file);
     if (content.empty()) throw DamagedFileError(file, "is empty", "Export the plan again.");
     refuse_known_others(content, file);
@@ -144,6 +144,12 @@ PlanImport read_one(const fs::path& file, const PlanImportSettings& settings) {
         file, "is of no kind that a plan is read from",
         "Give 3D Slicer markups (.mrk.json, .fcsv), DICOM RTSTRUCT (.dcm), a table of trajectories (.csv, .tsv), or "
         "lines (.vtp, .vtk, .ply, .obj).");
+}
+
+PlanImport read_one(const fs::path& file, const PlanImportSettings& settings) {
+    PlanImport read = read_kind(file, settings);
+    if (read.said_frame.space) read.said_frame.items = read.plan;
+    return read;
 }
 
 bool is_plan_name(const fs::path& file) {
@@ -197,6 +203,12 @@ void append(PlanImport& to, PlanImport more) {
     move(to.plan.cut_planes, more.plan.cut_planes);
     move(to.plan.risk_structures, more.plan.risk_structures);
     move(to.notes, more.notes);
+    to.says_other_space |= more.says_other_space;
+    if (more.said_frame.space) to.said_frame.space = more.said_frame.space;
+    move(to.said_frame.items.trajectories, more.said_frame.items.trajectories);
+    move(to.said_frame.items.boreholes, more.said_frame.items.boreholes);
+    move(to.said_frame.items.osteotomy_lines, more.said_frame.items.osteotomy_lines);
+    move(to.said_frame.items.cut_planes, more.said_frame.items.cut_planes);
 }
 
 namespace {
@@ -239,21 +251,65 @@ std::string left_out_of(const fs::path& folder) {
 
 }  // namespace
 
-PlanImport import_plan(const fs::path& file_or_folder, const PlanImportSettings& settings) {
-    check_exists(file_or_folder, "Check the name of the file or folder.");
-    if (!fs::is_directory(file_or_folder)) return looked_over(read_one(file_or_folder, settings), file_or_folder);
+Space space_of_plan(const SpaceSaid& file_says, const PlanImportSettings& settings, const fs::path& file,
+                    std::string_view how_to_say, PlanImport& read) {
+    if (settings.one_of_several && file_says.space && settings.space && *file_says.space != *settings.space) {
+        std::string note =
+            fmt::format("{} says that it is in {}, and is read so: --frame {} is for files that do not say",
+                        file.filename().string(), name_of(*file_says.space), name_of(*settings.space));
+        if (std::ranges::find(read.notes, note) == read.notes.end()) read.notes.push_back(std::move(note));
+        read.says_other_space = true;
+        return *file_says.space;
+    }
+    const Space space = settled_space(file_says, settings.space, file, how_to_say);
+    if (!file_says.space) read.said_frame.space = space;
+    return space;
+}
+
+namespace {
+
+std::vector<fs::path> plan_files_in(const fs::path& folder) {
     std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(file_or_folder))
+    for (const auto& entry : fs::directory_iterator(folder))
         if (is_plan_name(entry.path()) && !entry.path().filename().string().starts_with('.'))  // a Mac's `._plan`
             files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     if (files.empty())
-        throw InputError(file_or_folder, "holds no plan file",
+        throw InputError(folder, "holds no plan file",
                          "Save the plan's markups from 3D Slicer (.mrk.json) into this folder.");
+    return files;
+}
+
+PlanImport import_path(const fs::path& file_or_folder, const PlanImportSettings& settings) {
+    if (!fs::is_directory(file_or_folder)) return looked_over(read_one(file_or_folder, settings), file_or_folder);
     PlanImport all;
-    for (const auto& file : files) append(all, read_one(file, settings));
+    for (const auto& file : plan_files_in(file_or_folder)) append(all, read_one(file, settings));
     if (std::string left_out = left_out_of(file_or_folder); !left_out.empty()) all.notes.push_back(std::move(left_out));
     return looked_over(std::move(all), file_or_folder);
+}
+
+}  // namespace
+
+PlanImport import_plan(const std::vector<fs::path>& files, PlanImportSettings settings) {
+    std::size_t count = 0;
+    for (const auto& file : files) {
+        check_exists(file, "Check the name of the file or folder.");
+        count += fs::is_directory(file) ? plan_files_in(file).size() : 1;
+    }
+    settings.one_of_several = count > 1;
+    PlanImport all;
+    for (const auto& file : files) append(all, import_path(file, settings));
+    if (all.says_other_space && !all.said_frame.space)
+        throw InputError(files.front(),
+                         fmt::format("and all other files of the plan say their coordinate system, --frame {} says "
+                                     "another",
+                                     name_of(*settings.space)),
+                         "Leave --frame out, or export the plan again.");
+    return all;
+}
+
+PlanImport import_plan(const fs::path& file_or_folder, const PlanImportSettings& settings) {
+    return import_plan(std::vector{file_or_folder}, settings);
 }
 
 }  // namespace planlight

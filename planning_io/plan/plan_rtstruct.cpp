@@ -168,14 +168,52 @@ void check_frame_of_reference(const std::string& uid_of_plan, const PlanImportSe
                          "Give the structure set that was drawn on this series.");
 }
 
+namespace {
+
+bool differ(const std::string& a, const std::string& b) {
+    return !a.empty() && !b.empty() && a != b;
+}
+
+/// Empty where the set was drawn on the volume's series, or it is not known.
+std::string other_series(const RtStruct& set, const SeriesIdentity& volume) {
+    const bool other_study = differ(set.identity.study_uid, volume.study_uid);
+    if (volume.series_uid.empty() || std::ranges::count(set.referenced_series, volume.series_uid) > 0) return {};
+    if (!set.referenced_series.empty())
+        return fmt::format("says that it was drawn on another series than the volume{}, in the same frame of reference",
+                           other_study ? ", and is of another study" : "");
+    return other_study ? "does not say on which series it was drawn, and is of another study than the volume" : "";
+}
+
+}  // namespace
+
+void check_frame_of_reference(const RtStruct& set, const PlanImportSettings& settings, const fs::path& file,
+                              std::vector<std::string>& notes) {
+    check_frame_of_reference(set.frame_of_reference_uid, settings, file, notes);
+    if (set.ours) return;
+    const std::string name = file.filename().string();
+    if (differ(set.identity.patient_hash, settings.volume.patient_hash)) {
+        if (settings.accepted_frame_uid != set.frame_of_reference_uid)
+            throw InputError(file, "is of another patient: its Patient ID is not the volume's",
+                             "Give the structure set of this patient. If it is this patient under another number, say "
+                             "--accept-frame " +
+                                 set.frame_of_reference_uid + ".");
+        notes.push_back(name +
+                        ": nothing but --accept-frame says that it is of this patient: its Patient ID is not the "
+                        "volume's");
+    }
+    if (const std::string other = other_series(set, settings.volume); !other.empty())
+        notes.push_back(name + " " + other + ": check that its items lie where they belong");
+}
+
 PlanImport read_rtstruct(const fs::path& file, const PlanImportSettings& settings) {
-    if (settings.space == Space::ras)
-        throw InputError(file, "is DICOM, which is always LPS; --frame says RAS", "Leave --frame out.");
     PlanImport read;
+    if (settings.space == Space::ras && !settings.one_of_several)
+        throw InputError(file, "is DICOM, which is always LPS; --frame says RAS", "Leave --frame out.");
+    space_of_plan(std::optional(Space::lps), settings, file, "", read);
     const RtStruct set = read_rt_struct(file);
     const auto& rois = set.rois;
     read.frame_of_reference_uid = set.frame_of_reference_uid;
-    check_frame_of_reference(read.frame_of_reference_uid, settings, file, read.notes);
+    check_frame_of_reference(set, settings, file, read.notes);
     if (settings.frame_of_reference_uid && !settings.frame_of_reference_uid->empty())
         read.frame_of_reference_uid = *settings.frame_of_reference_uid;
     for (const RtRoi& roi : rois) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "planning_io/dicom/rt_struct.h"
 #include "planning_io/plan/plan_import.h"
 
 namespace planlight {
@@ -30,6 +31,11 @@ void write_plan_rtstruct(const Plan& plan, const RtStructIdentity& identity, con
 /// Throws InputError unless the frame of reference of a DICOM plan is that of the CT, as `settings` says it; not given,
 /// it is noted as not checked.
 void check_frame_of_reference(const std::string& uid_of_plan, const PlanImportSettings& settings,
+                              const std::filesystem::path& file, std::vector<std::string>& notes);
+
+/// The same of a structure set, which also says of which patient and on which series it was drawn: another patient is
+/// an InputError unless `settings.accepted_frame_uid` is its frame; that, and another series, are noted.
+void check_frame_of_reference(const RtStruct& set, const PlanImportSettings& settings,
                               const std::filesystem::path& file, std::vector<std::string>& notes);
 
 }  // namespace planlight

@@ -139,11 +139,11 @@ void join_segments(Shape& shape) {
 
 PlanImport read_shape_plan(const fs::path& file, const PlanImportSettings& settings) {
     Shape shape = welded(read_shape(file)).shape;
+    PlanImport read;
     const Space space =
-        settled_space(shape.space, settings.space, file, "Export it with its space (3D Slicer does: SPACE=LPS)");
+        space_of_plan(shape.space, settings, file, "Export it with its space (3D Slicer does: SPACE=LPS)", read);
     join_segments(shape);
     refuse_contour_stack(shape, file);
-    PlanImport read;
     const auto numbered = [&](std::size_t i, std::size_t count) {
         return count == 1 ? plan_name_of(file) : fmt::format("{} {}", plan_name_of(file), i + 1);
     };

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "planning_io/files/header_text.h"
+#include "planning_io/plan/header_statements.h"
 #include "planning_io/plan/plan_fcsv.h"
 #include "planning_io/plan/plan_settings.h"
 #include "planning_io/types/error.h"
@@ -27,6 +28,7 @@ struct Columns {
     std::array<std::size_t, 3> entry{}, target{};
     std::optional<std::size_t> diameter;
     std::size_t count = 0;
+    std::vector<std::pair<std::size_t, std::string>> statements = {};  ///< columns that say a frame or a unit
 };
 
 std::optional<std::array<std::size_t, 3>> triple(const std::map<std::string, std::size_t>& at,
@@ -61,7 +63,11 @@ Columns columns_of(const std::vector<std::string>& names, const fs::path& file, 
     for (std::size_t i = 0; i < names.size(); ++i) {
         const bool used = i == columns.name || i == columns.diameter || std::count(entry->begin(), entry->end(), i) ||
                           std::count(target->begin(), target->end(), i);
-        if (!used) left_out.push_back(names[i]);
+        if (used) continue;
+        if (names_the_space(names[i]) || names_the_unit(names[i]))
+            columns.statements.emplace_back(i, names[i]);
+        else
+            left_out.push_back(names[i]);
     }
     if (!left_out.empty())
         notes.push_back(
@@ -69,15 +75,16 @@ Columns columns_of(const std::vector<std::string>& names, const fs::path& file, 
     return columns;
 }
 
-/// mm per unit that the comment lines say; 1 when they say none.
-double unit_in(const std::string& comments, const fs::path& file) {
-    const auto at = comments.find("units=");
+constexpr const char* kSayUnit = "write the line \"# units=mm\" before the table";
+
+/// mm per unit that the comment lines and the row's columns say; 1 when they say none.
+double unit_in(const std::string& words, const fs::path& file) {
+    if (const auto said = unit_said(words, file, kSayUnit)) return *said;
+    const auto at = words.find("units=");
     if (at == std::string::npos) return 1;
     std::string unit;
-    std::istringstream(comments.substr(at + 6)) >> unit;
-    if (unit == "mm") return 1;
-    if (unit == "um") return 1e-3;
-    throw InputError(file, "says units=" + unit + ", neither mm nor um", "Export the table in mm.");
+    std::istringstream(words.substr(at + 6)) >> unit;
+    throw InputError(file, "says units=" + unit + ", neither mm nor um", "Export it again in mm.");
 }
 
 class Row {
@@ -123,6 +130,57 @@ Trajectory trajectory_of(const Row& row, const Columns& columns, Space space, do
     return t;
 }
 
+/// "frame: RAS", a line for each column that may say so.
+std::string statements_of(const std::vector<std::string>& fields, const Columns& columns) {
+    std::string said;
+    for (const auto& [column, name] : columns.statements)
+        if (column < fields.size()) said += name + ": " + fields[column] + '\n';
+    return said;
+}
+
+void note_unsaid(const std::vector<std::string>& fields, const Columns& columns, const fs::path& file,
+                 std::vector<std::string>& notes) {
+    for (const auto& [column, name] : columns.statements) {
+        if (column >= fields.size()) continue;
+        const std::string said = name + ": " + fields[column];
+        if (!space_said(said, file).space && !unit_said(said, file, kSayUnit))
+            notes.push_back(fmt::format("{}: the column {} is left out: it says neither LPS or RAS nor a unit",
+                                        file.filename().string(), name));
+    }
+}
+
+/// In which frame and unit the table's numbers are: said once, and never otherwise.
+class Numbers {
+public:
+    Numbers(const fs::path& file, const PlanImportSettings& settings, PlanImport& read)
+        : file_(file), settings_(settings), read_(read) {}
+    Space space() const { return space_; }
+    double mm_per_unit() const { return mm_per_unit_; }
+
+    void hear(const std::string& words) {
+        if (heard_ && words == words_) return;
+        const Space space = space_of_plan(space_said(words, file_), settings_, file_,
+                                          "Put the line \"# SPACE=LPS\" (or RAS) before the table", read_);
+        const double mm_per_unit = unit_in(words, file_);
+        if (heard_ && (space != space_ || mm_per_unit != mm_per_unit_))
+            throw InputError(file_, "says another coordinate system or unit below its first row",
+                             "Put the lines that say them before the table.");
+        heard_ = true;
+        words_ = words;
+        space_ = space;
+        mm_per_unit_ = mm_per_unit;
+    }
+
+private:
+    const fs::path& file_;
+    const PlanImportSettings& settings_;
+    PlanImport& read_;
+    bool heard_ = false;
+    std::string words_;
+    Space space_ = Space::lps;
+    double mm_per_unit_ = 1;
+};
+
 char separator_in(const std::string& header) {
     for (const char c : {'\t', ';'})
         if (header.find(c) != std::string::npos) return c;
@@ -133,11 +191,10 @@ char separator_in(const std::string& header) {
 
 PlanImport read_trajectory_table(const std::string& content, const fs::path& file, const PlanImportSettings& settings) {
     PlanImport read;
-    std::string comments;
+    std::string comments, of_the_row;
     std::optional<Columns> columns;
     char separator = ',';
-    Space space = Space::lps;
-    double mm_per_unit = 1;
+    Numbers numbers(file, settings, read);
     std::istringstream lines(without_byte_order_mark(content));
     int number = 0;
     for (std::string line; std::getline(lines, line);) {
@@ -157,18 +214,14 @@ PlanImport read_trajectory_table(const std::string& content, const fs::path& fil
             columns = columns_of(split_fields(line, separator), file, read.notes);
             continue;
         }
-        if (read.plan.empty()) {
-            space = settled_space(space_marked(comments, file), settings.space, file,
-                                  "Put the line \"# SPACE=LPS\" (or RAS) before the table");
-            mm_per_unit = unit_in(comments, file);
-        }
+        const auto fields = split_fields(line, separator);
+        of_the_row = statements_of(fields, *columns);
+        if (read.plan.empty()) note_unsaid(fields, *columns, file, read.notes);
+        numbers.hear(comments + of_the_row);
         read.plan.trajectories.push_back(
-            trajectory_of(Row(split_fields(line, separator), number, file), *columns, space, mm_per_unit));
+            trajectory_of(Row(fields, number, file), *columns, numbers.space(), numbers.mm_per_unit()));
     }
-    if (const auto said = space_marked(comments, file);
-        !read.plan.empty() && ((said && *said != space) || unit_in(comments, file) != mm_per_unit))
-        throw InputError(file, "says another coordinate system or unit below its first row",
-                         "Put the lines that say them before the table.");
+    if (!read.plan.empty()) numbers.hear(comments + of_the_row);
     if (read.plan.empty()) throw InputError(file, "holds no trajectories", std::string(kHowTo) + ".");
     return read;
 }

@@ -11,6 +11,7 @@
 #include "planning_io/files/header_text.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/coordinate_space.h"
+#include "planning_io/plan/header_statements.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -42,7 +43,7 @@ double number(const std::string& text, int line, const std::filesystem::path& fi
 
 std::vector<PointPair> read_point_pairs(const std::filesystem::path& file) {
     std::istringstream in(without_byte_order_mark(read_whole(file)));
-    std::optional<Space> space;
+    std::string comments;
     std::vector<PointPair> pairs;
     std::set<std::string> names;
     bool has_columns = false;
@@ -52,7 +53,7 @@ std::vector<PointPair> read_point_pairs(const std::filesystem::path& file) {
         if (!line.empty() && line.back() == '\r') line.pop_back();
         if (line.empty()) continue;
         if (line.front() == '#') {
-            if (const auto marked = space_marked(line, file)) space = marked;
+            comments += line + '\n';
             continue;
         }
         if (!has_columns) {
@@ -75,7 +76,7 @@ std::vector<PointPair> read_point_pairs(const std::filesystem::path& file) {
         for (std::size_t i = 0; i < 6; ++i) v[i] = number(fields[i + 1], number_of_line, file);
         pairs.push_back({fields[0], {v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
     }
-    const Space of_ct = settled_space(space, std::nullopt, file,
+    const Space of_ct = settled_space(space_said(comments, file), std::nullopt, file,
                                       "Write the line \"# SPACE=LPS\" or \"# SPACE=RAS\" at its beginning", "");
     for (PointPair& pair : pairs) pair.in_ct = to_ct(pair.in_ct, of_ct);
     return pairs;

@@ -41,7 +41,7 @@ Shape parse_obj(const std::string& content, const fs::path& file) {
             for (std::size_t c = 2; c < points.size(); ++c)
                 shape.triangles.push_back({points[0], points[c - 1], points[c]});
     }
-    shape.space = space_marked(comments, file);
+    shape.space = space_of_mesh(comments, file);
     return shape;
 }
 

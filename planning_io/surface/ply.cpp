@@ -177,10 +177,17 @@ std::size_t read_count(Reader& reader, Type type, const fs::path& file) {
 }
 
 void read_row(Reader& reader, const Element& element, Ply& ply, const fs::path& file) {
-    std::size_t column = 0;
+    std::size_t column = 0, ends = 0;
+    std::array<std::int64_t, 2> edge{};
     for (const Property& property : element.properties) {
         if (!property.count_type) {
             const double value = reader.next(property.type);
+            if (element.name == "edge" && (property.name == "vertex1" || property.name == "vertex2")) {
+                if (!(value >= 0) || value >= static_cast<double>(ply.vertices) || value != std::floor(value))
+                    damaged(file, "has an edge with an end that does not exist");
+                edge[property.name == "vertex1" ? 0 : 1] = static_cast<std::int64_t>(value);
+                ++ends;
+            }
             if (element.name == "vertex") ply.columns[column++].values.push_back(value);
             continue;
         }
@@ -195,6 +202,7 @@ void read_row(Reader& reader, const Element& element, Ply& ply, const fs::path& 
         }
         if (corners) ply.faces.push_back(std::move(list));
     }
+    if (ends == edge.size()) ply.edges.push_back(edge);
 }
 
 /// Of text a digit for each number; of a list its count at least.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -14,12 +15,13 @@ struct PlyColumn {
     std::vector<double> values;
 };
 
-/// The vertices and faces of a PLY file (ascii, or binary of either endianness); other elements are skipped.
+/// The vertices, faces and edges of a PLY file (ascii, or binary of either endianness); other elements are skipped.
 struct Ply {
     std::vector<std::string> comments;
     std::size_t vertices = 0;
     std::vector<PlyColumn> columns;
     std::vector<std::vector<std::int64_t>> faces;
+    std::vector<std::array<std::int64_t, 2>> edges;  ///< `vertex1` and `vertex2` of each element `edge`
 
     const std::vector<double>* column(std::string_view name) const;
     bool says(std::string_view words) const;  ///< in one of its comments

@@ -115,7 +115,7 @@ MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::pa
 TriangleMesh read_roi_surface(const fs::path& file, const std::string& roi, const PlanImportSettings& settings,
                               std::vector<std::string>& notes) {
     const RtStruct set = read_rt_struct(file);
-    check_frame_of_reference(set.frame_of_reference_uid, settings, file, notes);
+    check_frame_of_reference(set, settings, file, notes);
     std::vector<std::string> names;
     const RtRoi* chosen = nullptr;
     for (const RtRoi& candidate : set.rois) {
@@ -136,7 +136,7 @@ TriangleMesh read_roi_surface(const fs::path& file, const std::string& roi, cons
 std::vector<RiskStructure> read_roi_solids(const fs::path& file, const PlanImportSettings& settings,
                                            std::vector<std::string>& notes) {
     const RtStruct set = read_rt_struct(file);
-    check_frame_of_reference(set.frame_of_reference_uid, settings, file, notes);
+    check_frame_of_reference(set, settings, file, notes);
     std::vector<RiskStructure> solids;
     for (const RtRoi& roi : set.rois) {
         if (const std::string what = no_organ(roi); !what.empty()) {

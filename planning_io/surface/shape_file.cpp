@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "planning_io/files/safe_write.h"
+#include "planning_io/plan/header_statements.h"
 #include "planning_io/surface/ply.h"
 #include "planning_io/types/error.h"
 
@@ -18,7 +19,7 @@ Shape parse_ply_shape(const std::string& content, const fs::path& file) {
     Shape shape;
     std::string comments;
     for (const auto& comment : ply.comments) comments += comment + '\n';
-    shape.space = space_marked(comments, file);
+    shape.space = space_of_mesh(comments, file);
     const auto *x = ply.column("x"), *y = ply.column("y"), *z = ply.column("z");
     if (!x || !y || !z) throw DamagedFileError(file, "has no columns x, y, z", "Write or copy the PLY file again.");
     if (const auto* flags = ply.column("flags"))
@@ -29,6 +30,10 @@ Shape parse_ply_shape(const std::string& content, const fs::path& file) {
         for (std::size_t c = 2; c < face.size(); ++c)
             shape.triangles.push_back({static_cast<std::int32_t>(face[0]), static_cast<std::int32_t>(face[c - 1]),
                                        static_cast<std::int32_t>(face[c])});
+    if (ply.faces.empty())  // beside faces, edges are the faces' own
+        for (const auto& [from, to] : ply.edges)
+            shape.lines.push_back(
+                {{static_cast<std::int32_t>(from), static_cast<std::int32_t>(to)}, {}, {}, {}, {}, {}});
     return shape;
 }
 
@@ -45,6 +50,12 @@ void check(const Shape& shape, const fs::path& file) {
 }
 
 }  // namespace
+
+SpaceSaid space_of_mesh(const std::string& words, const fs::path& file) {
+    if (unit_said(words, file, "write units=mm into its header or a comment").value_or(1) != 1)
+        throw InputError(file, "says that its unit is um", "Export it again in mm.");
+    return space_said(words, file);
+}
 
 Shape read_shape(const fs::path& file) {
     std::string ending = file.extension().string();

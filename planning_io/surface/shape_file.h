@@ -28,7 +28,7 @@ struct Shape {
     std::vector<ShapeLine> lines;
     std::vector<std::array<std::int32_t, 3>> triangles;
     std::vector<std::uint8_t> flags;  ///< SkinFlag per point, of our own PLY files; else empty
-    std::optional<Space> space;       ///< from its "SPACE=LPS" or "SPACE=RAS" mark, where 3D Slicer puts it
+    SpaceSaid space;                  ///< by "SPACE=LPS" or "SPACE=RAS", where 3D Slicer puts it, or in other words
 };
 
 /// Reads STL (binary, ascii), OBJ, PLY, legacy VTK and VTP; polygons and strips become triangles. VTK and VTP are
@@ -45,6 +45,9 @@ struct WeldedShape {
 
 /// Points stand in the order in which they first come in the file.
 WeldedShape welded(const Shape& shape);
+
+/// What a header or comments say of the frame. Throws InputError where they say a unit that is not mm.
+SpaceSaid space_of_mesh(const std::string& words, const std::filesystem::path& file);
 
 // The readers of single formats, over the file's content (VTK's over the file).
 Shape parse_stl(const std::string& content, const std::filesystem::path& file);

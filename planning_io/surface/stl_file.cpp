@@ -30,7 +30,7 @@ Shape parse_binary_stl(const std::string& content, const fs::path& file) {
         refuse_damaged(file, "announces " + std::to_string(count) + " triangles and is " +
                                  std::to_string(content.size()) + " bytes long");
     Shape shape;
-    shape.space = space_marked(std::string_view(content).substr(0, kHeaderBytes), file);
+    shape.space = space_of_mesh(content.substr(0, kHeaderBytes), file);
     for (std::size_t t = 0; t < count; ++t) {
         std::array<float, 12> values{};
         std::memcpy(values.data(), content.data() + kHeaderBytes + 4 + kTriangleBytes * t, sizeof values);
@@ -45,6 +45,7 @@ Shape parse_binary_stl(const std::string& content, const fs::path& file) {
 Shape parse_ascii_stl(const std::string& content, const fs::path& file) {
     Shape shape;
     std::vector<Vector3d> corners;
+    std::string titles;
     bool ended = false;
     std::istringstream lines(content);
     for (std::string line; std::getline(lines, line);) {
@@ -52,7 +53,7 @@ Shape parse_ascii_stl(const std::string& content, const fs::path& file) {
         std::string word;
         words >> word;
         if (word == "solid") {
-            if (const auto said = space_marked(line, file)) shape.space = said;
+            titles += line + '\n';
             ended = false;
         } else if (word == "vertex") {
             corners.push_back(parse_point(words, file));
@@ -66,6 +67,7 @@ Shape parse_ascii_stl(const std::string& content, const fs::path& file) {
         }
     }
     if (!ended || !corners.empty()) refuse_damaged(file, "is cut short");
+    shape.space = space_of_mesh(titles, file);
     return shape;
 }
 

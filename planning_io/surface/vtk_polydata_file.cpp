@@ -112,7 +112,7 @@ Shape parse_vtk_in_child(const fs::path& file, bool xml) {
     });
     Shape shape;
     const std::string field = parcel.get_text();
-    shape.space = space_marked(field.empty() ? title : "SPACE=" + field, file);
+    shape.space = space_of_mesh(field.empty() ? title : "SPACE=" + field, file);
     const auto coordinates = parcel.get_list<double>();
     for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3)
         shape.points.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);

@@ -224,13 +224,16 @@ Volume parse_nifti(const fs::path& file) {
     check_intent(header);
 
     const float slope = header.at<float>(112), offset = header.at<float>(116), begin = header.at<float>(108);
-    if (!std::isfinite(slope) || (slope != 0 && !std::isfinite(offset)))
+    const bool unsaid = std::isnan(slope) && (std::isnan(offset) || offset == 0);
+    if (!unsaid && (!std::isfinite(slope) || (slope != 0 && !std::isfinite(offset))))
         throw InputError(file, fmt::format("scales its values by {} x + {}", slope, offset), kCopyAgain);
     if (!(begin >= 348) || !(begin < 1e8) || begin != std::floor(begin))
         throw DamagedFileError(file, fmt::format("has voxels that begin at byte {}", begin), kCopyAgain);
     source.skip(static_cast<std::uint64_t>(begin) - 348);
     volume.values = read_voxels(source, voxel_type(header), header.big_endian(), volume.index(0, 0, volume.size[2]));
-    if (slope != 0)
+    if (unsaid)
+        volume.notes.push_back("its scale is not a number (scl_slope): the values are taken as they are stored");
+    else if (slope != 0)
         for (float& v : volume.values) v = v * slope + offset;
     volume.source = "NIfTI file " + file.filename().string();
     if (const int code = sform(header) ? header.at<std::int16_t>(254) : header.at<std::int16_t>(252); code >= 3)

@@ -34,9 +34,9 @@ Volume checked(Volume volume, const fs::path& path) {
     return volume;
 }
 
-Volume parse_volume(const fs::path& path, const std::string& series, SliceGaps gaps) {
+Volume parse_volume(const fs::path& path, const std::string& series, SliceGaps gaps, SeriesIdentity* identity) {
     const std::string name = lower_case(path.filename().string());
-    if (fs::is_directory(path)) return parse_dicom_series(path, series, gaps);
+    if (fs::is_directory(path)) return parse_dicom_series(path, series, gaps, {}, identity);
     if (name.ends_with(".inv3")) return checked(read_invesalius_volume(path), path);
     if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return checked(parse_nifti(path), path);
     if (name.ends_with(".mgh") || name.ends_with(".mgz")) return checked(parse_mgh(path), path);
@@ -45,23 +45,25 @@ Volume parse_volume(const fs::path& path, const std::string& series, SliceGaps g
     if (name.ends_with(".hdr") || name.ends_with(".img"))
         throw InputError(path, "is an Analyze file or half of a NIfTI pair, which may not say left from right",
                          "Convert the DICOM series to one .nii.gz, or give the DICOM series.");
-    return parse_dicom_series(path, series, gaps);
+    return parse_dicom_series(path, series, gaps, {}, identity);
 }
 
 }  // namespace
 
-Volume read_volume(const fs::path& path, const std::string& series, SliceGaps gaps) {
+Volume read_volume(const fs::path& path, const std::string& series, SliceGaps gaps, SeriesIdentity* identity) {
     std::error_code error;
     check_exists(path, "Check the name of the file or folder.");
     if (!fs::is_regular_file(path, error) && !fs::is_directory(path, error))
         throw InputError(path, "is neither a file nor a folder", "Name a file or folder.");
     try {
-        return volume_in_child(path, [&] { return parse_volume(path, series, gaps); });
+        return volume_in_child(
+            path, [&] { return parse_volume(path, series, gaps, identity); }, identity);
     } catch (const ParserCrash&) {  // of a DICOM folder perhaps a file of somebody else's
         if (!fs::is_directory(path)) throw;
         const std::vector<fs::path> crashing = crashing_files_of(path);
         if (crashing.empty()) throw;
-        return volume_in_child(path, [&] { return parse_dicom_series(path, series, gaps, crashing); });
+        return volume_in_child(
+            path, [&] { return parse_dicom_series(path, series, gaps, crashing, identity); }, identity);
     }
 }
 

@@ -70,13 +70,21 @@ std::uintmax_t processor_limit_s(const fs::path& path) {
 
 }  // namespace
 
-Volume volume_in_child(const fs::path& path, const std::function<Volume()>& parse) {
+Volume volume_in_child(const fs::path& path, const std::function<Volume()>& parse, SeriesIdentity* identity) {
     ChildLimits limits{"volume"};
     limits.processor_s = static_cast<unsigned>(processor_limit_s(path));
     limits.wait_s = kMaxWait_s;
     limits.when_too_large = "Close other programs, give one series alone, or resample the volume to larger voxels.";
-    Parcel parcel = parse_in_child(path, limits, [&](Parcel& to) { put_volume(to, parse()); });
+    Parcel parcel = parse_in_child(path, limits, [&](Parcel& to) {
+        const Volume volume = parse();
+        const SeriesIdentity whose = identity ? *identity : SeriesIdentity{};
+        for (const auto& text : {whose.patient_hash, whose.study_uid, whose.series_uid}) to.put(text);
+        put_volume(to, volume);
+    });
     try {
+        SeriesIdentity whose;
+        for (std::string* text : {&whose.patient_hash, &whose.study_uid, &whose.series_uid}) *text = parcel.get_text();
+        if (identity) *identity = whose;
         return get_volume(parcel);
     } catch (const std::out_of_range&) {
         throw DamagedFileError(path, "could not be read to its end",

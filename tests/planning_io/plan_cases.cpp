@@ -175,7 +175,7 @@ void add_spoilt_tables(std::vector<PlanCase>& list) {
     };
     points("no coordinate system", "does not say its coordinate system", fcsv("", row));
     points("in voxels", "in voxels", fcsv("2", row));
-    points("a coordinate system of another word", "which is none", fcsv("lps", row));
+    points("a coordinate system of another word", "which is none", fcsv("LAS", row));
     points("two coordinate systems", "twice", fcsv("0\n# CoordinateSystem = 1", row));
     points("a row cut short", "3 fields", fcsv("0", "id,10,20\n"));
     points("a coordinate that is not a number", "\"nan\"", fcsv("0", "id,10,nan,30,0,0,0,1,1,1,0,P1,,\n"));
@@ -199,7 +199,7 @@ void add_spoilt_tables(std::vector<PlanCase>& list) {
     table("a number with its unit", "\"6mm\"", kTable + "A,1,2,3,4,5,6mm\n");
     table("an infinite number", "\"inf\"", kTable + "A,1,2,3,4,5,inf\n");
     table("no trajectories", "holds no trajectories", kTable);
-    table("another coordinate system below its rows", "below its first row",
+    table("another coordinate system below its rows", "says that it is in RAS",
           kTable + "A,1,2,3,40,5,6\n# SPACE=RAS\nB,1,2,9,40,5,6\n");
     table("a unit below its rows", "below its first row", kTable + "A,1,2,3,40,5,6\n# units=um\nB,1,2,9,40,5,6\n");
 }

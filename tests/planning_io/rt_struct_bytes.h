@@ -31,8 +31,14 @@ struct WrittenRoi {
     std::string description = {};  ///< ROI Description
 };
 
+/// Whose it is and on which series it was drawn; empty: it does not say.
+struct WrittenOf {
+    std::string patient_id = {}, study_uid = {}, series_uid = {};
+};
+
 /// An RTSTRUCT of these ROIs in the frame of reference 1.2.3; `frames`: what its list of frames says.
-inline std::string rt_struct_of(const std::vector<WrittenRoi>& rois, const std::vector<std::string>& frames = {}) {
+inline std::string rt_struct_of(const std::vector<WrittenRoi>& rois, const std::vector<std::string>& frames = {},
+                                const WrittenOf& of = {}) {
     std::vector<DicomBytes> names, contours, types, listed;
     for (std::size_t i = 0; i < rois.size(); ++i) {
         const std::string number = std::to_string(i + 1);
@@ -44,9 +50,19 @@ inline std::string rt_struct_of(const std::vector<WrittenRoi>& rois, const std::
         contours.push_back(DicomBytes().add_sequence(0x30060040, rois[i].contours).add(0x30060084, "IS", number));
         types.push_back(DicomBytes().add(0x30060084, "IS", number).add(0x300600A4, "CS", rois[i].type));
     }
-    for (const std::string& frame : frames) listed.push_back(DicomBytes().add(0x00200052, "UI", frame));
+    for (const std::string& frame : frames) {
+        DicomBytes item;
+        item.add(0x00200052, "UI", frame);
+        if (!of.series_uid.empty()) {
+            const DicomBytes series = DicomBytes().add(0x0020000E, "UI", of.series_uid);
+            item.add_sequence(0x30060012, {DicomBytes().add_sequence(0x30060014, {series})});
+        }
+        listed.push_back(item);
+    }
     DicomBytes all;
     all.add(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.481.3").add(0x00080060, "CS", "RTSTRUCT");
+    if (!of.patient_id.empty()) all.add(0x00100020, "LO", of.patient_id);
+    if (!of.study_uid.empty()) all.add(0x0020000D, "UI", of.study_uid);
     if (frames.empty()) all.add(0x00200052, "UI", "1.2.3");
     if (!frames.empty()) all.add_sequence(0x30060010, listed);
     return all.add_sequence(0x30060020, names)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
 #include <stdexcept>
 
 #include "planning_io/files/safe_write.h"
@@ -308,6 +309,12 @@ void add_formats(std::vector<VolumeCase>& list) {
             put<std::int16_t>(bytes, at, static_cast<std::int16_t>(2 * (v - 100)));
         }
         return bytes;
+    }));
+    list.push_back(file("NIfTI with a scale that is not a number", "head.nii", [=] {
+        std::string h = nifti_header(grid);
+        const float none = std::numeric_limits<float>::quiet_NaN();
+        put<float>(h, 112, none), put<float>(h, 116, none);
+        return nifti_bytes(h, grid);
     }));
     list.push_back(file("NRRD, raw", "head.nrrd", [=] { return nrrd_header(oblique) + int16_bytes(oblique); }));
     list.push_back(

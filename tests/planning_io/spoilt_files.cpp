@@ -110,6 +110,9 @@ void add_formats(std::vector<VolumeCase>& list) {
     list.push_back(nifti("colour voxels", "grey value", [](std::string& h) { put<std::int16_t>(h, 70, 128); }));
     list.push_back(nifti("a slope that is not a number", "scales its values",
                          [](std::string& h) { put<float>(h, 112, std::numeric_limits<float>::infinity()); }));
+    list.push_back(nifti("an offset without a scale", "scales its values", [](std::string& h) {
+        put<float>(h, 112, std::numeric_limits<float>::quiet_NaN()), put<float>(h, 116, -1024);
+    }));
     list.push_back(nifti("half of a pair", "half of a pair", [](std::string& h) { h[345] = 'i'; }));
     list.push_back(nifti("a description that says it was defaced", "taken away",
                          [](std::string& h) { h.replace(148, 9, "pydefaced"); }));

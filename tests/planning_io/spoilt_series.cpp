@@ -118,8 +118,8 @@ void add_slices(std::vector<VolumeCase>& list) {
     list.push_back(slice("a position 20 m away", "outside of any scanner", [](DicomObject& o) {
         o.decimals(kPosition, {-94.5, -97, 20000});
     }));
-    list.push_back(slices("directions that are not perpendicular (2e-4)", "not perpendicular", [](DicomObject& o) {
-        o.decimals(kOrientation, {1, 0, 0, 2e-4, 1, 0});
+    list.push_back(slices("directions that are not perpendicular (2e-3)", "not perpendicular", [](DicomObject& o) {
+        o.decimals(kOrientation, {1, 0, 0, 2e-3, 1, 0});
     }));
     list.push_back(slices("directions that are not of length 1 (0.99)", "not of length 1", [](DicomObject& o) {
         o.decimals(kOrientation, {0.99, 0, 0, 0, 1, 0});
@@ -182,6 +182,14 @@ void add_slices(std::vector<VolumeCase>& list) {
         list.push_back(slices(fmt::format("made of several slices, by its Image Type ({})", type),
                               "no slice of the patient but made of several",
                               [=](DicomObject& o) { o.text(0x00080008, "CS", type); }));
+    for (const char* words : {"AX MIP 10 mm", "MinIP lung", "Head VRT"})
+        list.push_back(slices(fmt::format("made of several slices, by its description ({})", words),
+                              "no slice of the patient but made of several",
+                              [=](DicomObject& o) { o.text(0x0008103e, "LO", words); }));
+    for (const char* storage_class : {"13.1.1", "13.1.2", "13.1.3"})
+        list.push_back(slices(fmt::format("a 3D X-ray ({})", storage_class), "X-ray 3D", [=](DicomObject& o) {
+            o.text(0x00080016, "UI", fmt::format("1.2.840.10008.5.1.4.1.1.{}", storage_class));
+        }));
     list.push_back(slices("no skin: one value only", "no skin", [](DicomObject& o) { fill(o, 24); }));
     list.push_back(slices("no skin: nothing but air", "no skin",
                           [](DicomObject& o) { fill(o, 24), o.elements[kPixels].bytes[64 * 64] = 30; }));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "planning_io/dicom/dicom_slices.h"
+#include "planning_io/files/content_hash.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
@@ -87,6 +88,47 @@ TEST(DicomSeries, SlicesThatOverlapByMoreThanHalfBlurTheSkin) {
         for (const std::string& note : read_volume(into).notes) notes += note;
         EXPECT_EQ(notes.find("the skin is blurred") != std::string::npos, said) << thick_mm << ": " << notes;
     }
+}
+
+// "0.999\0.042\0.000": of length 0.9999.
+TEST(DicomSeries, DirectionsOfThreeDecimalsAreMadeWhole) {
+    const test::TemporaryFolder folder;
+    auto objects = test::synthetic_series({});
+    for (auto& object : objects) object.text(0x00200037, "DS", "0.999\\0.042\\0.000\\-0.042\\0.999\\0.001");
+    test::write_series(objects, folder.path());
+    const Volume volume = read_volume(folder.path());
+    const Eigen::Matrix3d axes = volume.ct_from_voxel.linear().colwise().normalized();
+    EXPECT_NEAR(volume.spacing_mm().x(), 3, 1e-12);
+    EXPECT_NEAR(volume.spacing_mm().y(), 3, 1e-12);
+    EXPECT_NEAR(axes.col(0).dot(axes.col(1)), 0, 1e-12);
+    EXPECT_NEAR(axes(1, 0), 0.042, 1e-3);
+    EXPECT_TRUE(std::ranges::any_of(
+        volume.notes, [](const std::string& note) { return note.find("in few digits (off by") != std::string::npos; }));
+    auto slices = a_stack();
+    for (auto& slice : slices) slice.row_direction = {1 - 9e-5, 0, 0};
+    EXPECT_EQ(ct_from_voxel_of(slices).linear()(0, 0), 0.5 * (1 - 9e-5)) << "taken as it is written";
+    for (auto& slice : slices) slice.row_direction = {1 - 1.1e-3, 0, 0};
+    EXPECT_NE(problem(slices).find("not of length 1"), std::string::npos);
+}
+
+TEST(DicomSeries, ThinSlicesThatAreMeantForProjectionsAreNone) {
+    const test::TemporaryFolder folder;
+    for (const char* words : {"Head 0.6 for MIP", "HELMIP", "Head thin"}) {
+        const fs::path into = folder.path() / words;
+        fs::create_directories(into);
+        test::write_series(test::synthetic_series({}, {.description = words}), into);
+        EXPECT_NO_THROW(read_volume(into)) << words;
+    }
+}
+
+TEST(DicomSeries, WhoseItIsIsToldAndNotKept) {
+    const test::TemporaryFolder folder;
+    test::write_series(test::synthetic_series({}), folder.path());
+    SeriesIdentity identity;
+    const Volume volume = read_volume(folder.path(), {}, SliceGaps::refused, &identity);
+    EXPECT_EQ(identity.patient_hash, content_hash("PHANTOM-1"));
+    EXPECT_EQ(identity.series_uid, "1.2.826.0.1.3680043.9.9999.7.1");
+    EXPECT_EQ(volume.source, "DICOM series " + identity.series_uid);
 }
 
 /// A cylinder along z whose values rise by 5 HU a mm, cut at these heights: joined linearly its cuts give it back.

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 
+#include "planning_io/files/content_hash.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_rtstruct.h"
 #include "planning_io/types/error.h"
@@ -142,6 +143,42 @@ const test::WrittenRoi kCut{"Cut", {test::contour_saying("OPEN_NONPLANAR", 2, kL
 
 test::DicomBytes square(double z, const std::string& type = "CLOSED_PLANAR") {
     return test::closed_contour({{0, -100, z}, {8, -100, z}, {8, -92, z}, {0, -92, z}}, type);
+}
+
+TEST(PlanRtStruct, AnotherPatientIsRefusedAndAnotherSeriesSaid) {
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "set.dcm";
+    PlanImportSettings settings{{}, "1.2.3"};
+    settings.volume = {content_hash("4711"), "1.5", "1.5.1"};
+    const auto notes_of = [&](const test::WrittenOf& of) {
+        write_safely(file, test::rt_struct_of({kCut}, {"1.2.3"}, of));
+        std::string notes;
+        for (const auto& note : import_plan(file, settings).notes) notes += note + "\n";
+        return notes;
+    };
+    EXPECT_EQ(notes_of({"4711", "1.5", "1.5.1"}), "");
+    EXPECT_EQ(notes_of({" 4711 ", "1.5", "1.5.1"}), "") << "blanks are padding";
+    EXPECT_EQ(notes_of({}), "") << "what is not said is not compared";
+    EXPECT_EQ(notes_of({"4711", "1.5", ""}), "");
+    EXPECT_EQ(notes_of({"4711", "1.7", "1.5.1"}), "") << "systems that open a study of their own";
+    EXPECT_NE(notes_of({"4711", "1.5", "1.5.9"}).find("another series than the volume, in the same"),
+              std::string::npos);
+    EXPECT_NE(notes_of({"4711", "1.6", "1.6.1"}).find("is of another study, in the same"), std::string::npos);
+    EXPECT_NE(notes_of({"4711", "1.6", ""}).find("does not say on which series"), std::string::npos);
+    write_safely(file, test::rt_struct_of({kCut}, {"1.2.3"}, {"99", "1.5", "1.5.1"}));
+    const std::string said = refusal(file, settings);
+    EXPECT_NE(said.find("is of another patient"), std::string::npos) << said;
+    EXPECT_NE(said.find("--accept-frame 1.2.3"), std::string::npos) << said;
+    EXPECT_EQ(said.find("4711"), std::string::npos) << said;
+    settings.accepted_frame_uid = "1.2.3";
+    EXPECT_NE(notes_of({"99", "1.5", "1.5.1"}).find("nothing but --accept-frame"), std::string::npos);
+    settings = {{}, "1.2.3"};
+    EXPECT_EQ(notes_of({"99", "1.6", "1.6.1"}), "") << "of the volume nothing is known";
+    // Our own are given the case's code as Patient ID.
+    settings = {{}, kIdentity.frame_of_reference_uid};
+    settings.volume = {content_hash("4711"), "1.5", "1.5.1"};
+    write_plan_rtstruct(dicom_plan(1), kIdentity, file);
+    EXPECT_TRUE(import_plan(file, settings).notes.empty());
 }
 
 // A decimal comma would cut each number: light a millimetre towards the scanner's middle.
