@@ -1,4 +1,5 @@
 #include "registration/calibration/judge_pictures.h"
+#include "registration/devices/colour_mosaic.h"
 
 #include <fmt/format.h>
 
@@ -65,8 +66,9 @@ std::string counted_again(const BoardSpec& board) {
 std::optional<Refusal> judge_picture(const PoseObservation& pose, DeviceName camera, const BoardSpec& board,
                                      const CalibrationSettings& s) {
     const CameraObservation& seen = view_of(pose, camera);
-    if (seen.corners.size() == 0) return std::nullopt;
     const std::string where = fmt::format("{}, {}", pose.name, text_of(camera));
+    if (seen.colour_mosaic) return Refusal{fmt::format("{}: {}", where, kColourMosaic), kColourMosaicRemedy};
+    if (seen.corners.size() == 0) return std::nullopt;
     // A lens bends the board by a share of its width, however small its squares are.
     constexpr double kOffPlane = 0.15, kOffPlaneByColumns = 0.015;
     if (const double off = off_plane(seen.corners, board);
@@ -89,8 +91,10 @@ std::optional<Refusal> judge_picture(const PoseObservation& pose, DeviceName cam
     if (!seen.wrong_sequence.empty())
         return Refusal{
             fmt::format("{}: the frames do not show the sequence: {}", where, seen.wrong_sequence),
-            "Capture this pose again; if it comes back, check the delay between projector and cameras and the "
-            "names of the pictures. \"check_sequence\": false in capture.json takes them as they are."};
+            seen.sequence_remedy.empty()
+                ? "Capture this pose again; if it comes back, check the delay between projector and cameras and the "
+                  "names of the pictures. \"check_sequence\": false in capture.json takes them as they are."
+                : seen.sequence_remedy};
     if (seen.coded_light && seen.decoded_share < s.min_decoded)
         return Refusal{
             fmt::format("{}: only {:.0f} % of the lit board could be decoded", where, 100 * seen.decoded_share),
@@ -118,6 +122,9 @@ std::optional<Refusal> judge_pose_pictures(const PoseObservation& pose, const Bo
 
 std::optional<Refusal> judge_pictures(const std::vector<PoseObservation>& poses, const BoardSpec& board,
                                       const CalibrationSettings& s) {
+    for (const PoseObservation& pose : poses)
+        for (const DeviceName camera : kCameras)
+            if (view_of(pose, camera).colour_mosaic) return judge_picture(pose, camera, board, s);
     for (const DeviceName camera : kCameras) {
         if (camera == DeviceName::right_camera && !has(poses, camera)) continue;
         const auto found = static_cast<std::size_t>(std::count_if(

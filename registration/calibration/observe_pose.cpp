@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "planning_io/types/statistics.h"
+#include "registration/devices/colour_mosaic.h"
 #include "registration/scan/check/camera_gamma.h"
 #include "registration/scan/check/check_sequence.h"
 #include "registration/scan/check/panel_ends.h"
@@ -157,16 +158,18 @@ BoardCorners mirrored_corners(const GrayImage& picture, const BoardSpec& board) 
     return find_board(mirrored, board);
 }
 
-std::string wrong_in_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes) {
+void judge_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes, CameraObservation& seen) {
     const auto patterns = stripes.phase_steps == 0 ? gray_code_patterns(stripes) : stripe_sequence(stripes);
     const SequenceCheck check = check_sequence(frames, stripes, patterns, true);
-    if (check.problems.empty()) return {};
+    if (check.problems.empty()) return;
+    const SequenceProblem& problem = check.problems[0];
     ScanCapture capture;
     capture.stripes = stripes;
     if (stripes.phase_steps == 0) capture.partial = patterns;
     const double gamma = camera_gamma({frames.begin(), frames.end()}, uniform_light_frames(capture));
-    return fmt::format("{} ({:.0f} % of the lit pixels){}", check.problems[0].what, 100 * check.problems[0].share,
-                       said_of_gamma(gamma));
+    seen.wrong_sequence =
+        fmt::format("{} ({:.0f} % of the lit pixels){}", problem.what, 100 * problem.share, said_of_gamma(gamma));
+    if (problem.cause == SequenceProblem::Cause::flicker) seen.sequence_remedy = remedy_of(problem);
 }
 
 }  // namespace
@@ -182,6 +185,7 @@ CameraObservation observe_board(std::span<const GrayImage> frames, const std::op
     seen.width = frames[0].width;
     seen.height = frames[0].height;
     seen.coded_light = stripes.has_value() && frames.size() > 1;
+    seen.colour_mosaic = is_colour_mosaic(frames[0]);
     seen.corners = find_board(frames[0], board);
     if (!spans_a_plane(seen.corners, board)) {
         if (board.kind == BoardSpec::Kind::charuco)
@@ -192,7 +196,7 @@ CameraObservation observe_board(std::span<const GrayImage> frames, const std::op
     const auto pixels = pixels_on_board(seen, board, 12 * settings.light_samples);
     judge_white(frames[0], pixels, seen);
     if (!seen.coded_light) return seen;
-    if (settings.check_sequence) seen.wrong_sequence = wrong_in_sequence(frames, *stripes);
+    if (settings.check_sequence) judge_sequence(frames, *stripes, seen);
     keep_light(frames, *stripes, pixels, settings, seen);
     seen.moved_px =
         moved_between(seen.corners, follow_board(even_light(last_even(frames, *stripes)), seen.corners, board));

@@ -29,7 +29,9 @@ struct CameraObservation {
     double decoded_share = 0;        ///< of the pixels looked at on the board
     double moved_px = 0;             ///< of the board between the first picture and the last
     bool found_mirrored = false;     ///< the board was found only in the picture's mirror image
+    bool colour_mosaic = false;      ///< a colour camera's raw pictures (`is_colour_mosaic`)
     std::string wrong_sequence;      ///< a frame that does not show its own picture (`check_sequence`); empty: none
+    std::string sequence_remedy;     ///< of lamps that flicker; empty: the usual one
 };
 
 /// What both cameras saw of the board in one place.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "planning_io/types/error.h"
+#include "registration/devices/colour_mosaic.h"
 #include "registration/scan/check/camera_gamma.h"
 #include "registration/scan/check/panel_ends.h"
 #include "registration/scan/decode/decode_capture.h"
@@ -46,6 +47,15 @@ SequenceCheck sequence_of(const std::vector<GrayImage>& frames, const ScanCaptur
     if (!capture.partial.empty()) return check_sequence(frames, capture.stripes, capture.partial);
     const bool whole = capture.stripes.phase_steps >= 3 && frames.size() == stripe_sequence(capture.stripes).size();
     return whole ? check_sequence(frames, capture.stripes) : SequenceCheck{};
+}
+
+/// In the picture under white light.
+void refuse_colour_mosaic(const ScanCapture& capture) {
+    for (const auto* frames : {&capture.left, &capture.right})
+        if (!frames->empty() && is_colour_mosaic(frames->front()))
+            throw CheckFailedError(
+                fmt::format("the {} camera: {}", frames == &capture.left ? "left" : "right", kColourMosaic),
+                kColourMosaicRemedy);
 }
 
 void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
@@ -180,6 +190,7 @@ ScanResult scan_from_exposures(std::span<const ScanCapture> captures, const RigC
     Stopwatch watch;
     for (const ScanCapture& capture : captures) {
         check_devices(capture, rig);
+        refuse_colour_mosaic(capture);
         ScanResult one;
         if (settings.check_sequence && capture.check_sequence) refuse_wrong_sequence(capture, one);
         result.sequence_s += watch.lap_s();

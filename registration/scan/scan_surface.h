@@ -72,7 +72,7 @@ struct ScanResult {
 /// camera and the projector; a rig without a projector by both cameras, which find partners by the code (normals then
 /// look towards the left camera). `resection` needs all three. Throws std::invalid_argument when less is there;
 /// CheckFailedError, naming the picture, when a frame is late, doubled, missing or swapped
-/// (`ScanSettings::check_sequence`).
+/// (`ScanSettings::check_sequence`), and when the pictures are a colour camera's raw mosaic.
 ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings = {});
 
 }  // namespace planlight

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "planning_io/types/processor_clones.h"
+#include "planning_io/types/statistics.h"
 #include "registration/scan/check/sequence_fringes.h"
 #include "registration/scan/check/sequence_nesting.h"
 #include "registration/scan/check/sequence_samples.h"
@@ -73,6 +75,46 @@ void check_pairs(const Samples& s, const Direction& direction, SequenceCheck& ch
     }
 }
 
+/// How much brighter a picture and its inverse are than white and black together; 0 unless by the same grey where there
+/// is much light of the projector and where there is little: an exposure, a gain or a late picture goes with the light.
+double even_offset(const Samples& s, std::size_t gray, std::size_t inverse) {
+    constexpr double kLeast_grey = 3, kLeastRatio = 1.25, kAlike = 0.3, kSpread = 0.5;
+    const double usual = median(std::vector<double>(s.contrast.begin(), s.contrast.end()));
+    std::array<std::vector<double>, 2> off, contrast;  // of the dimmer half, of the brighter one
+    for (std::size_t i = 0; i < s.lit; ++i) {
+        const std::size_t half = s.contrast[i] > usual ? 1 : 0;
+        off[half].push_back(s.here[gray][i] + s.here[inverse][i] - s.here[s.white][i] - s.here[s.black][i]);
+        contrast[half].push_back(s.contrast[i]);
+    }
+    if (std::min(off[0].size(), off[1].size()) < kEnough / 2 || median(contrast[1]) < kLeastRatio * median(contrast[0]))
+        return 0;
+    const double dim = median(off[0]), bright = median(off[1]), mean = (dim + bright) / 2;
+    if (std::abs(mean) < kLeast_grey || std::abs(bright - dim) > kAlike * std::abs(mean)) return 0;
+    std::vector<double> apart;
+    for (const auto& half : off)
+        for (const double o : half) apart.push_back(std::abs(o - mean));
+    return median(std::move(apart)) < kSpread * std::abs(mean) + s.noise_grey ? mean : 0;
+}
+
+/// Two pictures and their inverses at least, and a fifth of all, are brighter or darker by the same grey everywhere.
+bool lamps_flicker(const Samples& s) {
+    std::size_t pairs = 0, even = 0;
+    for (const Direction& direction : s.directions)
+        for (std::size_t k = 0; k < direction.inverse.size(); ++k) {
+            ++pairs;
+            even += even_offset(s, direction.gray[k], direction.inverse[k]) != 0;
+        }
+    return even >= 2 && 5 * even >= pairs;
+}
+
+void blame_lamps(const Samples& s, SequenceCheck& check) {
+    using Cause = SequenceProblem::Cause;
+    const auto by_light = [](const SequenceProblem& p) { return p.cause == Cause::light || p.cause == Cause::fringes; };
+    if (std::none_of(check.problems.begin(), check.problems.end(), by_light) || !lamps_flicker(s)) return;
+    for (SequenceProblem& problem : check.problems)
+        if (by_light(problem)) problem.cause = Cause::flicker;
+}
+
 /// Of two bits the finer one changes more often, where it changes on enough lines to count on.
 void check_order(const Samples& s, const Direction& direction, const std::vector<Changes>& changes,
                  const GrayImage& picture, SequenceCheck& check) {
@@ -121,6 +163,10 @@ std::string remedy_of(const SequenceProblem& problem) {
             return "See that the patient lies still and nobody moves lamps, and switch off what changes by itself (the "
                    "camera's automatic exposure and gain, the projector's dynamic contrast); else check the delay "
                    "between projector and cameras and the names of the pictures.";
+        case Cause::flicker:
+            return "Lamps flicker, for the pictures are brighter or darker by the same grey everywhere: set the "
+                   "cameras' exposure to a whole number of 10 ms (mains of 50 Hz) or of 8.33 ms (60 Hz), or darken the "
+                   "room; and see that no lamp is switched while the patterns run.";
         case Cause::mirrored:
             return "See that no picture is mirrored and that the bits are not named as their inverses (white where a "
                    "bit is 1).";
@@ -142,7 +188,10 @@ SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSett
     SequenceCheck check;
     check_ends(samples, check);
     check.checked = check.checked && (samples.lit >= kEnough || !check.problems.empty());
-    if (!check.checked || !check.problems.empty()) return check;
+    if (!check.checked || !check.problems.empty()) {
+        blame_lamps(samples, check);
+        return check;
+    }
     for (Direction& direction : samples.directions) {
         const std::vector<Changes> changes = changes_of(samples, direction);
         direction.wide = wide_bits(changes);
@@ -162,6 +211,7 @@ SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSett
         if (!patchy) check_order(samples, direction, changes, frames[0], check);
     }
     if (judges_itself(samples)) check_nesting(frames, samples, check);
+    blame_lamps(samples, check);
     return check;
 }
 

@@ -17,9 +17,9 @@ struct SequenceProblem {
         what;  ///< with the names of the pictures, e.g. "column-gray-2 and its inverse do not complete each other"
     double share = 0;  ///< of the pixels looked at
     /// What it most likely comes from: pictures at the wrong time, or under each other's names; light or exposure that
-    /// changed (or a picture at the wrong time); inverted or mirrored pictures; fringes that are not those of
-    /// capture.json.
-    enum class Cause { timing, order, light, mirrored, fringes } cause = Cause::timing;
+    /// changed (or a picture at the wrong time); lamps that flicker; inverted or mirrored pictures; fringes that are
+    /// not those of capture.json.
+    enum class Cause { timing, order, light, flicker, mirrored, fringes } cause = Cause::timing;
 };
 
 /// A sentence on what to look for, by the cause.
