@@ -21,10 +21,11 @@
 #include "planning_io/files/header_text.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/statistics.h"
+#include "registration/devices/colour_mosaic.h"
 #include "registration/devices/repeated_picture.h"
 #include "registration/tracking/camera_lag.h"
-#include "registration/tracking/exchanged_cameras.h"
 #include "registration/tracking/track_patient.h"
+#include "registration/tracking/why_lost.h"
 
 namespace planlight {
 namespace {
@@ -138,14 +139,43 @@ void judge_reference(const PatientTracker& tracker, const StereoFrame& frame, co
 
 /// Throws CheckFailedError with what can be told of the cause: no frame has a pose.
 [[noreturn]] void refuse_lost(const PatientTracker& tracker, const StereoFrame& frame) {
-    if (cameras_seem_exchanged(tracker, frame))
-        throw CheckFailedError("in the frames left and right camera are exchanged against the reference picture",
-                               "Exchange the folders of left and right in the frames.");
+    using Cause = WhyLost::Cause;
+    const WhyLost why = why_lost(tracker, frame);
+    switch (why.cause) {
+        case Cause::exchanged:
+            throw CheckFailedError("in the frames left and right camera are exchanged against the reference picture",
+                                   "Exchange the folders of left and right in the frames.");
+        case Cause::turned:
+            throw CheckFailedError("the frames are turned by 180 degrees against the reference picture",
+                                   "Turn the pictures of both cameras back, or switch the turn off in the cameras' "
+                                   "settings and record again.");
+        case Cause::mirrored:
+            throw CheckFailedError("the frames are mirrored against the reference picture",
+                                   "Mirror the pictures of both cameras back, or switch the flip off in the cameras' "
+                                   "settings and record again.");
+        case Cause::camera_moved:
+            throw CheckFailedError(
+                fmt::format("each camera sees as many discs as the reference picture has markers ({}), but they do not "
+                            "meet in space: a camera moved since the scan",
+                            tracker.markers().size()),
+                "Scan again; if the scan is refused as well, calibrate again. See also that the rig.json is that of "
+                "these cameras.");
+        case Cause::fewer_seen:
+            throw CheckFailedError(
+                fmt::format("the frames show fewer discs ({} in the left picture, {} in the right) than the reference "
+                            "picture has markers ({}): they are blurred, too dark or too bright, or the markers are "
+                            "covered",
+                            why.left, why.right, tracker.markers().size()),
+                "Expose for a shorter time where the head moves, with more light; see that nothing covers the "
+                "markers.");
+        case Cause::rearranged:
+            break;
+    }
     throw CheckFailedError(
         fmt::format("in no frame were the {} markers of the reference picture found where they stand together",
                     tracker.markers().size()),
         "Give the frames of this patient, with the markers as they were pasted at the scan, and the rig.json of their "
-        "cameras.");
+        "cameras; if a camera was moved since, scan again.");
 }
 
 /// Throws CheckFailedError where one camera's pictures are older than the other's in all frames; takes the poses out of
@@ -244,8 +274,10 @@ int run_track(const TrackOptions& options) {
     const auto frames = read_frames(options.frames);
     if (frames.empty())
         throw InputError(options.frames, "there is no frame in the folder", "Record at least one frame.");
+    refuse_colour_mosaic(frames.front().left, frames.front().right);
     const MarkerDesign design = marker_design_named(options.markers);
     const Reference reference = reference_of(options, rig, frames);
+    refuse_colour_mosaic(reference.frame.left, reference.frame.right);
     PatientTracker tracker(reference.origin.rig, tracking_settings_for(design));
     const auto markers = tracker.set_reference(reference.frame).size();
     judge_reference(tracker, reference.frame, reference.origin.rig, design);

@@ -1,5 +1,4 @@
 #include "registration/calibration/judge_pictures.h"
-#include "registration/devices/colour_mosaic.h"
 
 #include <fmt/format.h>
 
@@ -67,7 +66,10 @@ std::optional<Refusal> judge_picture(const PoseObservation& pose, DeviceName cam
                                      const CalibrationSettings& s) {
     const CameraObservation& seen = view_of(pose, camera);
     const std::string where = fmt::format("{}, {}", pose.name, text_of(camera));
-    if (seen.colour_mosaic) return Refusal{fmt::format("{}: {}", where, kColourMosaic), kColourMosaicRemedy};
+    if (seen.colour_mosaic)
+        return Refusal{
+            fmt::format("{}: these are raw pictures of a colour camera: every second pixel is brighter", where),
+            "Set the camera's pixel format to Mono8, or convert the pictures to grey before they are given."};
     if (seen.corners.size() == 0) return std::nullopt;
     // A lens bends the board by a share of its width, however small its squares are.
     constexpr double kOffPlane = 0.15, kOffPlaneByColumns = 0.015;

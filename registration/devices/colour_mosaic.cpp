@@ -1,10 +1,14 @@
 #include "registration/devices/colour_mosaic.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
+
+#include "planning_io/types/error.h"
 
 namespace planlight {
 namespace {
@@ -46,6 +50,15 @@ bool is_colour_mosaic(const GrayImage& picture) {
     std::nth_element(ratios.begin(), middle, ratios.end());
     return *middle > kDiffers &&
            static_cast<double>(std::max(green[0], green[1])) > kNearlyAll * static_cast<double>(ratios.size());
+}
+
+void refuse_colour_mosaic(const GrayImage& left, const GrayImage& right) {
+    for (const GrayImage* picture : {&left, &right})
+        if (is_colour_mosaic(*picture))
+            throw CheckFailedError(
+                fmt::format("the {} camera: these are raw pictures of a colour camera: every second pixel is brighter",
+                            picture == &left ? "left" : "right"),
+                "Set the camera's pixel format to Mono8, or convert the pictures to grey before they are given.");
 }
 
 }  // namespace planlight

@@ -9,10 +9,7 @@ namespace planlight {
 /// everywhere where there is light. Interlaced lines, columns of unlike gain, noise and texture do not do that.
 bool is_colour_mosaic(const GrayImage& picture);
 
-/// The refusal of such pictures, and what to do.
-inline constexpr const char* kColourMosaic =
-    "these are raw pictures of a colour camera: every second pixel is brighter";
-inline constexpr const char* kColourMosaicRemedy =
-    "Set the camera's pixel format to Mono8, or convert the pictures to grey before they are given.";
+/// Throws CheckFailedError where a camera's picture is one; `right` may be empty.
+void refuse_colour_mosaic(const GrayImage& left, const GrayImage& right);
 
 }  // namespace planlight

@@ -49,13 +49,9 @@ SequenceCheck sequence_of(const std::vector<GrayImage>& frames, const ScanCaptur
     return whole ? check_sequence(frames, capture.stripes) : SequenceCheck{};
 }
 
-/// In the picture under white light.
-void refuse_colour_mosaic(const ScanCapture& capture) {
-    for (const auto* frames : {&capture.left, &capture.right})
-        if (!frames->empty() && is_colour_mosaic(frames->front()))
-            throw CheckFailedError(
-                fmt::format("the {} camera: {}", frames == &capture.left ? "left" : "right", kColourMosaic),
-                kColourMosaicRemedy);
+/// Under white light; empty where there is no such camera.
+GrayImage first_of(const std::vector<GrayImage>& frames) {
+    return frames.empty() ? GrayImage{} : frames.front();
 }
 
 void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
@@ -190,7 +186,7 @@ ScanResult scan_from_exposures(std::span<const ScanCapture> captures, const RigC
     Stopwatch watch;
     for (const ScanCapture& capture : captures) {
         check_devices(capture, rig);
-        refuse_colour_mosaic(capture);
+        refuse_colour_mosaic(first_of(capture.left), first_of(capture.right));
         ScanResult one;
         if (settings.check_sequence && capture.check_sequence) refuse_wrong_sequence(capture, one);
         result.sequence_s += watch.lap_s();

@@ -52,23 +52,25 @@ std::string names_of(const std::vector<RigDevice>& devices) {
 /// "the projector moved", "the left camera moved or its lens was changed (focus, zoom or shift)".
 std::string words_of(const std::vector<RigDevice>& devices, bool moved, bool lens) {
     constexpr const char* kLens = "lens was changed (focus, zoom or shift)";
+    if (!moved && devices.size() > 1) return "both cameras' lenses were changed (focus, zoom or warmth)";
     if (!moved) return fmt::format("{}'s {}", names_of(devices), kLens);
     return names_of(devices) + (lens ? fmt::format(" moved or its {}", kLens) : std::string(" moved"));
 }
 
-/// Explanations that blame the same devices are one: "the projector moved, or the left camera moved".
+/// Explanations that blame the same device are one: "the projector moved, or the left camera moved".
 std::string words_of(const std::vector<const Explanation*>& possible) {
     std::vector<std::vector<RigDevice>> blamed;
     std::string text;
     for (const Explanation* e : possible) {
         const auto devices = devices_of(*e);
-        if (std::find(blamed.begin(), blamed.end(), devices) != blamed.end()) continue;
-        blamed.push_back(devices);
-        bool moved = false, lens = false;
-        for (const Explanation* other : possible)
-            if (devices_of(*other) == devices) moved |= !other->moved.empty(), lens |= !other->lens.empty();
-        const bool simple = moved && !e->moved.empty() && e->lens.empty() && devices.size() > 1;
-        text += (text.empty() ? "" : ", or ") + words_of(devices, moved, lens && !simple);
+        bool moved = !e->moved.empty(), lens = !e->lens.empty();
+        if (devices.size() == 1) {
+            if (std::find(blamed.begin(), blamed.end(), devices) != blamed.end()) continue;
+            blamed.push_back(devices);
+            for (const Explanation* other : possible)
+                if (devices_of(*other) == devices) moved |= !other->moved.empty(), lens |= !other->lens.empty();
+        }
+        text += (text.empty() ? "" : ", or ") + words_of(devices, moved, lens);
     }
     return text;
 }
@@ -126,7 +128,10 @@ void judge(const Explanation& best, const std::vector<const Explanation*>& possi
     state.verdict = fits && state.hidden_light_mm <= settings.max_hidden_mm ? RigState::Verdict::corrected
                                                                             : RigState::Verdict::not_trusted;
     state.sentence = fmt::format("{} {} (by {})", words_of(possible), since, size_of(best, state));
-    const auto others = [&](const Explanation* e) { return devices_of(*e) != devices_of(best); };
+    const auto others = [&](const Explanation* e) {
+        return devices_of(*e) != devices_of(best) ||
+               (devices_of(best).size() > 1 && e->moved.empty() != best.moved.empty());
+    };
     if (std::any_of(possible.begin(), possible.end(), others)) state.sentence += "; one scan cannot tell which";
     state.sentence +=
         fits ? fmt::format("; light may be off by up to {:.2f} mm without a sign of it", state.hidden_light_mm)

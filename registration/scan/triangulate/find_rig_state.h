@@ -32,7 +32,10 @@ struct RigStateSettings {
     /// much worse than the best one may explain it and still be the true one.
     double moved_chi_square = 25, doubt_chi_square = 16;
     double lens_and_place_penalty = 12, two_devices_penalty = 20;  ///< of explanations with more to choose
-    double max_usual_residual = 4;                                 ///< sigmas; more is a rig that fits from no place
+    /// Both cameras' focal lengths changed alike: as warmth does it, or a person who focuses both; no zoom is turned by
+    /// the same on both.
+    double both_lenses_focal = 0.003, both_lenses_penalty = 6;
+    double max_usual_residual = 4;  ///< sigmas; more is a rig that fits from no place
     /// How far the cameras' rays may miss each other by rig.json, sigmas of a pixel (usual place), before the rig is
     /// adjusted within what its calibration leaves open; the points of farther places are lost.
     double max_unadjusted = 1.5;

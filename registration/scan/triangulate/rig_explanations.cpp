@@ -68,6 +68,7 @@ std::vector<Explanation> explanations(const RigStateSettings& settings) {
     add({D::left_camera, D::projector}, {}, settings.two_devices_penalty);
     add({D::right_camera, D::projector}, {}, settings.two_devices_penalty);
     add({D::left_camera, D::right_camera}, {}, settings.two_devices_penalty);
+    add({}, {D::left_camera, D::right_camera}, settings.both_lenses_penalty);
     return all;
 }
 
@@ -80,6 +81,13 @@ RigMatrix prior_of(const Explanation& explanation, const RigMatrix& calibration,
     };
     for (const RigDevice device : explanation.moved)
         for (Eigen::Index k = 0; k < 6; ++k) widen(device, k, k < 3 ? settings.moved_turn : settings.moved_mm);
+    if (explanation.lens.size() > 1) {
+        for (const RigDevice a : explanation.lens)
+            for (const RigDevice b : explanation.lens)
+                covariance(10 * static_cast<Eigen::Index>(a) + 6, 10 * static_cast<Eigen::Index>(b) + 6) +=
+                    settings.both_lenses_focal * settings.both_lenses_focal;
+        return covariance;
+    }
     for (const RigDevice device : explanation.lens) {
         widen(device, 6, settings.lens_focal);
         for (Eigen::Index k : {7, 8}) widen(device, k, settings.lens_centre * device_of(rig, device).width);

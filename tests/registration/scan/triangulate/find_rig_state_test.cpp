@@ -148,6 +148,20 @@ TEST(FindRigState, WhatOnlyChangesTheScaleIsSaidWithWhatItHides) {
                                     : RigState::Verdict::corrected);
 }
 
+/// Warmth, or a person who focused both: to one scan that is a projector's lens as well. Whichever is taken, both
+/// cameras' lenses are named, and the light is no farther off than is said.
+TEST(FindRigState, BothCamerasLensesChangedAlikeHideNoMoreThanIsSaid) {
+    for (const double focal : {0.002, 0.0037, -0.0037}) {
+        RigCalibration rig = bumped(RigDevice::left_camera, {0, 0, 0}, {0, 0, 0}, focal);
+        rig.right_camera = bumped(RigDevice::right_camera, {0, 0, 0}, {0, 0, 0}, focal).right_camera;
+        const ScanResult scan = scan_from_capture(scanned().shot, rig);
+        EXPECT_NE(scan.rig.sentence.find("both cameras' lenses were changed"), std::string::npos)
+            << focal << ": " << scan.rig.sentence;
+        EXPECT_LT(light_off_mm(scan.rig.rig), 1.2 * scan.rig.hidden_light_mm + 0.1)
+            << focal << ": " << scan.rig.sentence;
+    }
+}
+
 TEST(FindRigState, ColumnsOnlyCannotTell) {
     StripeSettings columns = stripes_of(scanned().room);
     columns.rows = false;
