@@ -22,7 +22,7 @@ constexpr double kMost_mm = 5000;  ///< a PDF page ends at 5080 mm
 }  // namespace
 
 Eigen::Vector3d BoardSpec::corner_in_board(int id) const {
-    return {(id % corners_across() + 1) * square_mm, (id / corners_across() + 1) * square_mm, 0};
+    return {(id % corners_across() + 1) * square_mm, (id / corners_across() + 1) * square_mm * stretch, 0};
 }
 
 BoardSpec parse_board(const std::string& text) {

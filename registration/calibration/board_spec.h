@@ -12,6 +12,7 @@ struct BoardSpec {
     enum class Kind { charuco, chessboard } kind = Kind::charuco;
     int columns = 10, rows = 7;  ///< squares of a ChArUco board; inner corners of a chessboard (each as OpenCV counts)
     double square_mm = 25;
+    double stretch = 1;  ///< height of a square over its width; 1 of every board that was printed as it should be
 
     int squares_across() const { return kind == Kind::charuco ? columns : columns + 1; }
     int squares_down() const { return kind == Kind::charuco ? rows : rows + 1; }
@@ -19,7 +20,7 @@ struct BoardSpec {
     int corners_down() const { return squares_down() - 1; }
     int corner_count() const { return corners_across() * corners_down(); }
     double width_mm() const { return squares_across() * square_mm; }
-    double height_mm() const { return squares_down() * square_mm; }
+    double height_mm() const { return squares_down() * square_mm * stretch; }
 
     /// Inner corner `id` (rows from the top, 0 = first) on the flat board, z = 0.
     Eigen::Vector3d corner_in_board(int id) const;

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace planlight {
@@ -54,6 +55,15 @@ std::string misfit_together(const BundleResult& cameras, const CalibrationSettin
     return fmt::format("{:.0f} % of the corners do not fit", 100 * out);
 }
 
+/// The cameras adjusted on their corners, on a board that may be stretched.
+BundleResult adjust_corners(const std::vector<PoseObservation>& poses, const BoardSpec& board,
+                            const CalibrationSettings& settings) {
+    const InitialCalibration start = calibrate_cameras_initially(poses, board);
+    BundleSettings corners = settings.bundle;
+    corners.light = false;
+    return start.failure.empty() ? adjust_bundle(poses, board, start.rig, corners) : BundleResult{};
+}
+
 /// One camera adjusted by itself, as the left one of a rig.
 BundleResult camera_alone(const std::vector<PoseObservation>& poses, const BoardSpec& board, DeviceName camera,
                           const CalibrationSettings& settings) {
@@ -62,10 +72,7 @@ BundleResult camera_alone(const std::vector<PoseObservation>& poses, const Board
         if (camera == DeviceName::right_camera) pose.left = pose.right;
         pose.right = {};
     }
-    const InitialCalibration start = calibrate_cameras_initially(own, board);
-    BundleSettings corners = settings.bundle;
-    corners.light = false;
-    return start.failure.empty() ? adjust_bundle(own, board, start.rig, corners) : BundleResult{};
+    return adjust_corners(own, board, settings);
 }
 
 /// What the right camera would have seen without its mirror. In a mirrored chessboard the corners are named from the
@@ -84,10 +91,7 @@ BundleResult with_right_mirrored(const std::vector<PoseObservation>& poses, cons
             id = board.has_a_top() ? (down - 1 - y) * across + x : y * across + across - 1 - x;
         }
     mirrored = named_as_left(std::move(mirrored), board);
-    const InitialCalibration start = calibrate_cameras_initially(mirrored, board);
-    BundleSettings corners = settings.bundle;
-    corners.light = false;
-    return start.failure.empty() ? adjust_bundle(mirrored, board, start.rig, corners) : BundleResult{};
+    return adjust_corners(mirrored, board, settings);
 }
 
 bool fits(const BundleResult& bundle, const CalibrationSettings& s) {
@@ -98,22 +102,82 @@ bool fits(const BundleResult& bundle, const CalibrationSettings& s) {
 
 constexpr double kFloor_px = 0.02;  ///< below this a ratio of residuals says nothing
 
-/// Each camera alone fits this much better than both together.
-std::optional<Refusal> judge_pair(const std::vector<PoseObservation>& poses, const BoardSpec& board,
-                                  const BundleResult& cameras, const CalibrationSettings& s) {
+/// A camera that fits its corners by itself, but much worse together with the other.
+struct WorseTogether {
+    DeviceName camera;
+    double by_itself_px, together_px;
+};
+
+std::optional<WorseTogether> worse_together(const std::vector<PoseObservation>& poses, const BoardSpec& board,
+                                            const BundleResult& cameras, const CalibrationSettings& s) {
     if (!cameras.rig.device(DeviceName::right_camera)) return std::nullopt;
     for (const DeviceName camera : kCameras) {
         const BundleResult alone = camera_alone(poses, board, camera, s);
         const double by_itself = alone.sigma_px[0], together = cameras.sigma_px[static_cast<std::size_t>(camera)];
         if (alone.converged && together > s.max_worse_together * by_itself + kFloor_px)
-            return Refusal{
-                fmt::format("the {}'s corners fit to {:.2f} px by themselves, but to {:.2f} px together with the "
-                            "other camera's{}: a camera was moved between "
-                            "poses, or left and right pictures are not of the same moment",
-                            text_of(camera), by_itself, together, worst_poses(poses, cameras, camera)),
-                "Fix the cameras to the rig, then capture all poses again."};
+            return WorseTogether{camera, by_itself, together};
     }
     return std::nullopt;
+}
+
+std::string said_of_stretch(double stretch) {
+    return fmt::format("both cameras see the board {:.1f} % {} than it should be", 100 * std::abs(stretch),
+                       stretch > 0 ? "longer in its height" : "shorter in its height");
+}
+
+constexpr const char* kStretchRemedy =
+    "Measure the board's width and its height over many squares; print it without scaling to the page, on another "
+    "printer if need be, and capture again.";
+
+/// The height of the board's squares over their width with which both cameras fit best together: the square of the
+/// misfit is a parabola over it.
+BoardSpec best_stretched(const std::vector<PoseObservation>& poses, BoardSpec board,
+                         const CalibrationSettings& settings) {
+    const auto misfit = [&](double stretch) {
+        board.stretch = stretch;
+        const BundleResult result = adjust_corners(poses, board, settings);
+        return result.converged ? result.sigma_px[0] * result.sigma_px[0] + result.sigma_px[1] * result.sigma_px[1]
+                                : std::numeric_limits<double>::quiet_NaN();
+    };
+    double best = board.stretch;
+    for (const double step : {0.01, 0.0025, 0.001}) {
+        const double below = misfit(best - step), here = misfit(best), above = misfit(best + step);
+        const double bend = below + above - 2 * here;
+        if (!(bend > 0)) break;
+        best = std::clamp(best + step * (below - above) / (2 * bend), 0.9, 1.1);
+    }
+    board.stretch = best;
+    return board;
+}
+
+/// A board printed longer one way and rolled between the poses contradicts itself as cameras do that were moved.
+/// Refused as such where its height alone, left free, makes both cameras fit together as well as each by itself.
+std::optional<Refusal> judge_stretch(const std::vector<PoseObservation>& poses, const BoardSpec& board,
+                                     const BundleResult& cameras, const CalibrationSettings& s) {
+    if (!cameras.rig.device(DeviceName::right_camera)) return std::nullopt;
+    constexpr double kLeast = 0.001, kMuchBetter = 0.5;
+    const BoardSpec stretched = best_stretched(poses, board, s);
+    const BundleResult now = adjust_corners(poses, stretched, s);
+    if (!fits(now, s) || std::abs(stretched.stretch - 1) < kLeast || worse_together(poses, stretched, now, s))
+        return std::nullopt;
+    for (const DeviceName camera : kCameras) {
+        const auto c = static_cast<std::size_t>(camera);
+        if (now.sigma_px[c] > kMuchBetter * cameras.sigma_px[c] + kFloor_px) return std::nullopt;
+    }
+    return Refusal{said_of_stretch(stretched.stretch - 1), kStretchRemedy};
+}
+
+std::optional<Refusal> judge_pair(const std::vector<PoseObservation>& poses, const BoardSpec& board,
+                                  const BundleResult& cameras, const CalibrationSettings& s) {
+    const auto worse = worse_together(poses, board, cameras, s);
+    if (!worse) return std::nullopt;
+    if (auto refusal = judge_stretch(poses, board, cameras, s)) return refusal;
+    return Refusal{fmt::format("the {}'s corners fit to {:.2f} px by themselves, but to {:.2f} px together with the "
+                               "other camera's{}: a camera was moved between "
+                               "poses, or left and right pictures are not of the same moment",
+                               text_of(worse->camera), worse->by_itself_px, worse->together_px,
+                               worst_poses(poses, cameras, worse->camera)),
+                   "Fix the cameras to the rig, then capture all poses again."};
 }
 
 /// The median over the poses of how well a pose's light fits a projector that may stand anywhere.
@@ -163,27 +227,55 @@ std::string when_moved(const std::vector<std::size_t>& odd, const std::vector<Po
     return odd.size() == 1 ? "for that pose" : "for those poses";
 }
 
+/// All poses that contradict the others of one device. Where they are several they draw the adjustment towards
+/// themselves, and only the worst shows: it is left out and the others are asked again.
+struct OddPoses {
+    DeviceName device;
+    std::vector<std::size_t> poses;
+};
+
+std::optional<OddPoses> all_odd_poses(const std::vector<PoseObservation>& poses, const BoardSpec& board,
+                                      BundleResult bundle, const BundleSettings& settings) {
+    std::optional<OddPoses> first, all;
+    const std::size_t seen = bundle.rig.poses();
+    for (;;) {
+        std::vector<std::size_t> odd;
+        for (const DeviceName device : kDevices) {
+            if (!odd.empty() || !bundle.rig.device(device)) continue;
+            odd = odd_poses(bundle, device);
+            if (!odd.empty() && !first) first = all = OddPoses{device, {}};
+        }
+        if (odd.empty()) return all;
+        for (const std::size_t pose : odd) bundle.rig.rig_from_board[pose].reset();
+        all->poses.insert(all->poses.end(), odd.begin(), odd.end());
+        std::sort(all->poses.begin(), all->poses.end());
+        if (first->poses.empty()) first = all;
+        if (2 * bundle.rig.poses() <= seen) return first;  // which of them are odd is open
+        bundle = adjust_bundle(poses, board, bundle.rig, settings);
+        if (!bundle.converged) return first;
+    }
+}
+
 /// A device that was moved before the last pose or after the first contradicts one pose only: a small share of all that
 /// was seen, which no median feels.
-std::optional<Refusal> judge_odd_poses(const std::vector<PoseObservation>& poses, const BundleResult& bundle) {
-    for (const DeviceName device : kDevices) {
-        if (!bundle.rig.device(device)) continue;
-        const std::vector<std::size_t> odd = odd_poses(bundle, device);
-        if (odd.empty()) continue;
-        std::vector<std::string> names;
-        for (const std::size_t pose : odd) names.push_back(poses[pose].name);
-        const bool light = device == DeviceName::projector;
-        const char* them = odd.size() == 1 ? "that pose" : "those poses";
-        return Refusal{
-            fmt::format(
-                "the {}'s {} of {} contradict{} the other poses': {} was moved {}, or the pictures of {} are bad",
-                text_of(device), light ? "light" : "corners", fmt::join(names, ", "), light ? "s" : "",
-                light ? "the projector, or a camera," : "a camera", when_moved(odd, poses, bundle.rig), them),
-            fmt::format("If every device stands now as it stood in the other poses, take {} out of the folder and "
-                        "calibrate again; else fix all devices to the rig and capture all poses again.",
-                        fmt::join(names, ", "))};
-    }
-    return std::nullopt;
+std::optional<Refusal> judge_odd_poses(const std::vector<PoseObservation>& poses, const BoardSpec& board,
+                                       const BundleResult& bundle, const BundleSettings& settings) {
+    const auto odd = all_odd_poses(poses, board, bundle, settings);
+    if (!odd) return std::nullopt;
+    std::vector<std::string> names;
+    for (const std::size_t pose : odd->poses) names.push_back(poses[pose].name);
+    const bool light = odd->device == DeviceName::projector;
+    const char* them = names.size() == 1 ? "that pose" : "those poses";
+    return Refusal{
+        fmt::format("the {}'s {} of {} contradict{} the other poses': {} was moved {}, or its zoom or focus changed, "
+                    "or the pictures of {} are bad",
+                    text_of(odd->device), light ? "light" : "corners", fmt::join(names, ", "), light ? "s" : "",
+                    light ? "the projector, or a camera," : "a camera", when_moved(odd->poses, poses, bundle.rig),
+                    them),
+        fmt::format("If every device stands now as it stood in the other poses, take {} out of the folder and "
+                    "calibrate again; else fix all devices to the rig, and their zoom and focus, and capture all poses "
+                    "again.",
+                    fmt::join(names, ", "))};
 }
 
 std::optional<Refusal> judge_lens(const CameraModel& d, DeviceName name) {
@@ -227,11 +319,6 @@ double board_stretch(const RigEstimate& rig) {
     return a * b > 0 && std::abs(a) < kAlike * std::abs(b) && std::abs(b) < kAlike * std::abs(a) ? (a + b) / 2 : 0;
 }
 
-std::string said_of_stretch(double stretch) {
-    return fmt::format("both cameras see the board {:.1f} % {} than it should be", 100 * std::abs(stretch),
-                       stretch > 0 ? "longer in its height" : "shorter in its height");
-}
-
 /// Of a camera that is upright to the left one and beside it. Of cameras that are rolled against each other or stand
 /// one above the other, none is the left one by its pictures.
 bool stands_on_the_left(const CameraModel& right) {
@@ -246,6 +333,7 @@ bool stands_on_the_left(const CameraModel& right) {
 std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, const BoardSpec& board,
                                      const BundleResult& cameras, const CalibrationSettings& s) {
     if (!fits(cameras, s)) {
+        if (auto refusal = judge_stretch(poses, board, cameras, s)) return refusal;
         for (const DeviceName camera : kCameras) {
             if (!cameras.rig.device(camera)) continue;
             const BundleResult alone = camera_alone(poses, board, camera, s);
@@ -269,7 +357,9 @@ std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, 
             "Fix the cameras to the rig, then capture all poses again."};
     }
     if (auto refusal = judge_pair(poses, board, cameras, s)) return refusal;
-    if (auto refusal = judge_odd_poses(poses, cameras)) return refusal;
+    BundleSettings corners = s.bundle;
+    corners.light = false;
+    if (auto refusal = judge_odd_poses(poses, board, cameras, corners)) return refusal;
     const auto& right = cameras.rig.device(DeviceName::right_camera);
     if (right && stands_on_the_left(*right))
         return Refusal{
@@ -309,15 +399,13 @@ std::optional<Refusal> judge_rig(const std::vector<PoseObservation>& poses, cons
         if (!fits(bundle, s))
             return Refusal{"the cameras fit the board, but not together with the light",
                            "Fix all devices to the rig, then capture all poses again."};
-        if (auto refusal = judge_odd_poses(poses, bundle)) return refusal;
+        if (auto refusal = judge_odd_poses(poses, board, bundle, s.bundle)) return refusal;
     }
     for (const DeviceName name : kDevices)
         if (const auto& d = bundle.rig.device(name))
             if (auto refusal = judge_lens(*d, name)) return refusal;
     if (const double stretch = board_stretch(bundle.rig); std::abs(stretch) > s.max_board_stretch)
-        return Refusal{said_of_stretch(stretch),
-                       "Measure the board's width and its height over many squares; print it without scaling to the "
-                       "page, on another printer if need be, and capture again."};
+        return Refusal{said_of_stretch(stretch), kStretchRemedy};
     if (!calibration.volume) return std::nullopt;
     const VolumeError& volume = *calibration.volume;
     for (const auto& [what, p95_mm] : {std::pair("points", volume.p95_mm), {"the light", volume.light_p95_mm}})

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -111,6 +112,47 @@ TEST(CalibrateRigRefuses, ABoardThatWasStretchedInPrinting) {
     EXPECT_TRUE(says(bad));
     expect_refused(of_board(1.01), "longer in its height");
     expect_refused(of_board(0.99), "shorter in its height");
+}
+
+/// As the guide tells people to hold it: rolled from pose to pose. Then it contradicts itself as moved cameras do.
+TEST(CalibrateRigRefuses, AStretchedBoardThatWasRolledBetweenThePoses) {
+    for (const double stretch : {1.003, 0.995, 1.01, 1.03}) {
+        test::IdealRoom room = test::ideal_room();
+        room.noise_px = 0.02;
+        for (RigidTransform& pose : room.rig_from_board) pose.linear().col(1) *= stretch;
+        const Calibration found = calibrated(room, room.observe(), false);
+        expect_refused(found, stretch > 1 ? "longer in its height" : "shorter in its height");
+        ASSERT_TRUE(found.refusal);
+        EXPECT_NE(found.refusal->reason.find(fmt::format("{:.1f} %", 100 * std::abs(stretch - 1))), std::string::npos)
+            << found.refusal->reason;
+    }
+}
+
+/// A lens whose focal length changed by 0.2 % in the last two poses of thirteen: the first adjustment shows but one of
+/// them.
+TEST(CalibrateRigRefuses, AllPosesAreNamedInWhichALensWasChanged) {
+    for (const double change : {1.002, 1.003}) {
+        test::IdealRoom room = test::ideal_room(13);
+        room.noise_px = 0.02;
+        test::IdealRoom zoomed = room;
+        zoomed.rig.left_camera.focal_x *= change;
+        zoomed.rig.left_camera.focal_y *= change;
+        auto poses = room.observe();
+        const auto after = zoomed.observe();
+        poses[11] = after[11], poses[12] = after[12];
+        const Calibration found = calibrated(room, poses, false);
+        expect_refused(found, "corners of pose-11, pose-12 contradict");
+        ASSERT_TRUE(found.refusal);
+        EXPECT_NE(found.refusal->reason.find("or its zoom or focus changed"), std::string::npos);
+        EXPECT_NE(found.refusal->remedy.find("take pose-11, pose-12 out"), std::string::npos);
+    }
+}
+
+TEST(CalibrateRigRefuses, AColourCamerasRawPictures) {
+    const test::IdealRoom room = test::ideal_room();
+    auto poses = room.observe();
+    for (PoseObservation& pose : poses) pose.right.colour_mosaic = true, pose.right.corners = {};
+    expect_refused(calibrated(room, poses), "pose-00, right camera: these are raw pictures of a colour camera");
 }
 
 TEST(CalibrateRigRefuses, CamerasThatAreSwapped) {
