@@ -101,9 +101,9 @@ void fill_padding(Volume& volume) {
         least, next));
 }
 
-/// True of values that are those of a CT with 1024 (or 1000) added: none is below zero, more than half of what is no air
-/// lies between fat and blood, little between air and fat, and some of it is bone. Of 19 volumes of MR none fits, scaled
-/// as suits it best.
+/// True of values that are those of a CT with 1024 (or 1000) added: none is below zero, more than half of what is no
+/// air lies between fat and blood, little between air and fat, and some of it is bone. Of 19 volumes of MR none fits,
+/// scaled as suits it best.
 bool is_ct_above_zero(const std::vector<float>& sample) {
     constexpr double kAir = 150, kFat = 900, kBlood = 1150, kDenserThanAir = 850, kBone = 1250, kMetal = 3200;
     if (*std::ranges::min_element(sample) < -100) return false;
