@@ -17,6 +17,7 @@
 #include "planning_io/volume/read_volume.h"
 #include "projection/check_plan.h"
 #include "projection/label_names.h"
+#include "projection/said_frame.h"
 #include "segmentation/skin_threshold.h"
 
 namespace planlight {

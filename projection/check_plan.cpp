@@ -13,6 +13,7 @@
 #include "projection/mid_plane.h"
 #include "projection/plan_alternatives.h"
 #include "projection/plan_sides.h"
+#include "projection/skin_points.h"
 
 namespace planlight {
 namespace {
@@ -20,20 +21,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFinestFit_mm = 0.2;  // of any plan on a skin of triangles
-
-/// The points of an item that must lie near the skin.
-std::vector<Vector3d> skin_points(const Trajectory& t) {
-    return {t.entry_in_ct};
-}
-std::vector<Vector3d> skin_points(const Borehole& b) {
-    return {b.position_in_ct};
-}
-std::vector<Vector3d> skin_points(const OsteotomyLine& o) {
-    return o.points_in_ct;
-}
-std::vector<Vector3d> skin_points(const CutPlane&) {
-    return {};
-}
 
 std::vector<Vector3d> all_points(const Trajectory& t) {
     return {t.entry_in_ct, t.target_in_ct};
@@ -359,33 +346,6 @@ PlanVerdict check_plan(const Plan& plan, const SkinSurface& skin, const std::opt
     for (const auto& c : plan.cut_planes) checker.look_at(c);
     for (const auto& structure : plan.risk_structures) checker.look_at(structure);
     return checker.verdict();
-}
-
-std::string doubt_of_said_frame(const SaidFrame& said, const SkinSurface& skin) {
-    constexpr double kOn_mm = 0.3, kOff_mm = 2;
-    if (!said.space) return {};
-    std::vector<Vector3d> points;
-    const auto add = [&](const auto& items) {
-        for (const auto& item : items)
-            for (const Vector3d& p : skin_points(item)) points.push_back(p);
-    };
-    add(said.items.trajectories);
-    add(said.items.boreholes);
-    add(said.items.osteotomy_lines);
-    if (points.empty() || tells_by_copies(points)) return {};
-    double given_mm = 0, turned_mm = 0;
-    for (const Vector3d& p : points) {
-        if (!p.allFinite()) return {};
-        const Vector3d turned(-p.x(), -p.y(), p.z());
-        given_mm = std::max(given_mm, (skin.nearest(p).p_in_ct - p).norm());
-        turned_mm = std::max(turned_mm, (skin.nearest(turned).p_in_ct - turned).norm());
-    }
-    if (given_mm <= kOff_mm || turned_mm > kOn_mm) return {};
-    const Space other = *said.space == Space::lps ? Space::ras : Space::lps;
-    return fmt::format(
-        "only --frame says that the plan is in {}: so it lies up to {:.1f} mm off the skin, in {} it would lie within "
-        "{:.1f} mm. Ask the program that wrote it, or the person who planned, which of the two it is",
-        name_of(*said.space), given_mm, name_of(other), turned_mm);
 }
 
 void refuse_stopped_plan(const PlanVerdict& verdict) {

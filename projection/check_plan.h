@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "planning_io/plan/plan_import.h"
 #include "planning_io/types/plan.h"
 #include "planning_io/types/volume.h"
 #include "projection/skin_surface.h"
@@ -65,10 +64,6 @@ struct PlanVerdict {
 /// turned or mirrored copy of the plan that fits the skin far better than the plan does, and not all of it in the air.
 PlanVerdict check_plan(const Plan& plan, const SkinSurface& skin, const std::optional<VolumeBox>& volume = std::nullopt,
                        const PlanCheckSettings& settings = {});
-
-/// A warning where few points, too few for `check_plan` to tell a turned plan by, lie off the skin in the frame that
-/// only a person said, and on it in the other of LPS and RAS; else empty.
-std::string doubt_of_said_frame(const SaidFrame& said, const SkinSurface& skin);
 
 /// Throws InputError with the first stops when there are any.
 void refuse_stopped_plan(const PlanVerdict& verdict);

@@ -20,6 +20,7 @@
 #include "projection/check_plan.h"
 #include "projection/label_names.h"
 #include "projection/mid_plane.h"
+#include "projection/said_frame.h"
 
 namespace planlight {
 namespace {

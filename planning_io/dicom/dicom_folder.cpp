@@ -9,15 +9,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
-#include <map>
-#include <set>
-#include <utility>
 
+#include "planning_io/dicom/altered_pictures.h"
 #include "planning_io/dicom/fat_shift.h"
 #include "planning_io/dicom/header_values.h"
 #include "planning_io/dicom/inflated_dicom.h"
+#include "planning_io/dicom/storage_class.h"
 #include "planning_io/files/header_text.h"
 #include "planning_io/files/sandboxed_process.h"
 #include "planning_io/types/error.h"
@@ -30,50 +28,6 @@ namespace fs = std::filesystem;
 
 constexpr int kMostFrames = 20000;
 constexpr std::size_t kMostFiles = 200000;
-const std::set<std::string> kVolumeClasses = {
-    "1.2.840.10008.5.1.4.1.1.2",   "1.2.840.10008.5.1.4.1.1.2.1",
-    "1.2.840.10008.5.1.4.1.1.2.2",  // CT, Enhanced CT, Legacy Converted Enhanced CT
-    "1.2.840.10008.5.1.4.1.1.4",   "1.2.840.10008.5.1.4.1.1.4.1", "1.2.840.10008.5.1.4.1.1.4.4"};  // MR likewise
-
-/// How the file says that what made the face recognisable was taken away (DICOM PS3.3 C.7.6.1.1.10, PS3.16 CID 7050).
-std::string defaced(vtkDICOMMetaData* meta) {
-    if (text_at(meta, vtkDICOMTag(0x0028, 0x0302)) == "NO") return "Recognizable Visual Features = NO";
-    const vtkDICOMValue& codes = meta->Get(0, vtkDICOMTag(0x0012, 0x0064));
-    const vtkDICOMItem* items = codes.GetSequenceData();
-    for (std::size_t i = 0; items && i < codes.GetNumberOfValues(); ++i)
-        if (plain(items[i].Get(DC::CodeValue).AsString()) == "113102")
-            return "de-identification by code 113102, Clean Recognizable Visual Features";
-    const std::string word =
-        defacing_word_in(text_at(meta, vtkDICOMTag(0x0012, 0x0063)) + " " + text_at(meta, DC::SeriesDescription));
-    return word.empty() ? "" : "\"" + word + "\" in its description";
-}
-
-/// MIP, MinIP or VRT as a word of a series' description; "thin, for MIP" is none.
-std::string projection_word_in(const std::string& description) {
-    std::string word, before;
-    for (const char c : lower_case(description) + " ") {
-        if (std::isalnum(static_cast<unsigned char>(c))) {
-            word += c;
-            continue;
-        }
-        const bool is_one = word == "mip" || word == "minip" || word == "vrt";
-        if (is_one && before != "for" && before != "fuer" && before != "no")
-            return word == "minip" ? "MinIP" : word == "mip" ? "MIP" : "VRT";
-        if (!word.empty()) before = std::exchange(word, {});
-    }
-    return {};
-}
-
-/// How the file says that its picture was made of several slices (DICOM PS3.3 C.7.6.1.1.2 and C.8.16.1): maximum and
-/// minimum intensity projections, subtractions.
-std::string projected(vtkDICOMMetaData* meta) {
-    const std::string type = "\\" + text_at(meta, DC::ImageType) + "\\";
-    for (const char* word : {"MIP", "MINIP", "MAX_IP", "MIN_IP", "PROJECTION IMAGE", "SUBTRACTION", "SUBTRACT"})
-        if (type.find(fmt::format("\\{}\\", word)) != std::string::npos) return std::string("Image Type ") + word;
-    const std::string word = projection_word_in(text_at(meta, DC::SeriesDescription));
-    return word.empty() ? "" : "\"" + word + "\" in its description";
-}
-
 DicomSlice slice_of(vtkDICOMMetaData* meta, int frame, const std::string& name) {
     DicomSlice slice;
     slice.file = name;
@@ -215,56 +169,6 @@ bool says_dicom(const fs::path& file) {
     return in.seekg(128) && in.read(mark.data(), 4) && mark == "DICM";
 }
 
-/// "0.5 x 0.5 x 1.25 mm" of what is known, for people.
-std::string spacing_text(const DicomSeries& series) {
-    const auto slices = series.all_slices();
-    if (slices.empty() || !std::isfinite(slices.front().column_spacing_mm)) return "-";
-    std::string text = fmt::format("{:.3g} x {:.3g}", slices.front().column_spacing_mm, slices.front().row_spacing_mm);
-    const Eigen::Vector3d normal = slices.front().row_direction.cross(slices.front().column_direction);
-    if (std::any_of(slices.begin(), slices.end(), [](const auto& s) { return !s.position_in_ct.allFinite(); }) ||
-        slices.size() < 2)
-        return text + " mm";
-    const auto [first, last] = std::minmax_element(slices.begin(), slices.end(), [&](const auto& a, const auto& b) {
-        return normal.dot(a.position_in_ct) < normal.dot(b.position_in_ct);
-    });
-    return text + fmt::format(" x {:.3g} mm", (last->position_in_ct - first->position_in_ct).norm() /
-                                                  static_cast<double>(slices.size() - 1));
-}
-
-std::string table_of(const std::vector<DicomSeries>& list) {
-    std::string table = "\n  number  modality  slices  spacing  UID  \"description\"";
-    for (const auto& s : list)
-        table += fmt::format("\n  {}  {}  {}  {}  {}  \"{}\"{}", s.number.empty() ? "-" : s.number, s.modality,
-                             s.slices(), spacing_text(s), s.uid, s.description,
-                             s.slices() == 0                ? " (no pictures)"
-                             : s.is_volume()                ? ""
-                             : is_x_ray_3d(s.files.front()) ? " (" + words_of_class(s.files.front()) + ")"
-                                                            : " (no CT or MR volume)");
-    return table;
-}
-
-/// Whether a file that does not say of which series it is names this one, or its frame of reference, somewhere in its
-/// first megabyte: then it is a damaged slice of it.
-bool names_series(const fs::path& file, const DicomSeries& series) {
-    std::string bytes(std::size_t{1} << 20, '\0');
-    std::ifstream in(file, std::ios::binary);
-    in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    bytes.resize(static_cast<std::size_t>(in.gcount()));
-    std::vector<std::string> uids{series.uid};
-    for (const auto& slice : series.all_slices())
-        if (!slice.frame_of_reference_uid.empty()) uids.push_back(slice.frame_of_reference_uid);
-    std::sort(uids.begin(), uids.end());
-    uids.erase(std::unique(uids.begin(), uids.end()), uids.end());
-    return std::any_of(uids.begin(), uids.end(),
-                       [&](const std::string& uid) { return bytes.find(uid) != std::string::npos; });
-}
-
-bool holds(const DicomSeries& series, const fs::path& path) {
-    std::error_code error;
-    return std::any_of(series.files.begin(), series.files.end(),
-                       [&](const DicomFile& f) { return fs::equivalent(f.path, path, error); });
-}
-
 }  // namespace
 
 int DicomSeries::slices() const {
@@ -281,42 +185,9 @@ std::vector<DicomSlice> DicomSeries::all_slices() const {
 
 bool DicomSeries::is_volume() const {
     return std::all_of(files.begin(), files.end(),
-                       [](const DicomFile& f) { return kVolumeClasses.contains(f.storage_class); }) &&
+                       [](const DicomFile& f) { return is_volume_class(f.storage_class); }) &&
            std::any_of(files.begin(), files.end(),
                        [](const DicomFile& f) { return !f.localizer && !f.slices.empty(); });
-}
-
-std::string words_of_class(const DicomFile& file) {
-    static const std::map<std::string, std::string> kWords = {
-        {"1.1", "a computed radiograph"},
-        {"3.1", "an ultrasound sequence"},
-        {"6.1", "an ultrasound picture"},
-        {"7", "a secondary capture"},
-        {"7.4", "a secondary capture"},
-        {"9.1.1", "an electrocardiogram"},
-        {"13.1.1", "an X-ray 3D angiographic image"},
-        {"13.1.2", "a cone beam CT stored as an X-ray 3D craniofacial image"},
-        {"13.1.3", "an X-ray 3D breast image"},
-        {"20", "a nuclear medicine image"},
-        {"66.4", "a segmentation"},
-        {"88.11", "a report"},
-        {"88.22", "a report"},
-        {"88.33", "a report"},
-        {"88.59", "a list of key pictures"},
-        {"104.1", "a PDF"},
-        {"128", "a PET image"},
-        {"481.2", "a radiotherapy dose"},
-        {"481.3", "a plan (RTSTRUCT)"},
-        {"481.5", "a radiotherapy plan"}};
-    const std::string before = "1.2.840.10008.5.1.4.1.1.";
-    if (file.storage_class.starts_with(before))
-        if (const auto words = kWords.find(file.storage_class.substr(before.size())); words != kWords.end())
-            return words->second;
-    return fmt::format("of modality \"{}\", storage class {}", file.modality, file.storage_class);
-}
-
-bool is_x_ray_3d(const DicomFile& file) {
-    return file.storage_class.starts_with("1.2.840.10008.5.1.4.1.1.13.1.");
 }
 
 bool is_dicom_directory(const fs::path& file) {
@@ -362,51 +233,6 @@ DicomFolder find_dicom(const fs::path& folder, int depth, const std::vector<fs::
         }
     }
     return found;
-}
-
-DicomSeries choose_series(const DicomFolder& folder, const fs::path& path, const std::string& wanted) {
-    std::vector<DicomSeries> chosen;
-    const bool is_folder = fs::is_directory(path);
-    const bool says_folder = is_folder || is_dicom_directory(path);
-    for (const DicomSeries& s : folder.series)
-        if (!wanted.empty() ? s.uid == wanted || s.number == wanted : says_folder ? s.is_volume() : holds(s, path))
-            chosen.push_back(s);
-    if (chosen.size() > 1 && wanted.empty() &&
-        std::any_of(chosen.begin(), chosen.end(), [](const auto& s) { return s.slices() >= kFewestSlices; }))
-        std::erase_if(chosen,
-                      [](const DicomSeries& s) { return s.slices() < kFewestSlices; });  // a few slices are no rival
-    for (const auto& file : folder.unreadable)  // of others, a damaged file does not matter
-        if (fs::equivalent(file, path) || (says_folder && chosen.empty()) ||
-            std::any_of(chosen.begin(), chosen.end(), [&](const auto& s) { return names_series(file, s); }))
-            throw DamagedFileError(
-                file, "is a DICOM file that is damaged or does not say of which series it is",
-                "Copy or export the series again; if the file is not of the series, move it elsewhere.");
-    if (!says_folder && wanted.empty() && chosen.empty())
-        throw InputError(
-            path, "is no DICOM file, nor any other kind of volume that is read",
-            "Name a folder with a CT or MR series, or a file: .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, .inv3.");
-    if (folder.series.empty())
-        throw InputError(
-            path, "holds no DICOM images",
-            "Name a folder with a CT or MR series, or a file: .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, .inv3.");
-    if (chosen.empty())
-        throw InputError(
-            path,
-            (wanted.empty() ? "holds no CT or MR volume; there is:"
-                            : "holds no series of the UID or number " + wanted + "; there is:") +
-                table_of(folder.series),
-            std::ranges::any_of(folder.series, [](const DicomSeries& s) { return is_x_ray_3d(s.files.front()); })
-                ? "Export it from the scanner's program as CT Image Storage."
-                : "Name a folder with a CT or MR series of slices.");
-    if (chosen.size() > 1 && wanted.empty() && chosen.front().slices() < kFewestSlices)
-        throw InputError(path,
-                         fmt::format("holds no CT or MR volume of {} slices or more; there is:", kFewestSlices) +
-                             table_of(folder.series),
-                         "Name a folder with a CT or MR series of thin slices.");
-    if (chosen.size() > 1)
-        throw InputError(path, "holds several series:" + table_of(wanted.empty() ? folder.series : chosen),
-                         "Choose one by its UID (--series UID).");
-    return chosen.front();
 }
 
 }  // namespace planlight

@@ -52,17 +52,7 @@ DicomFolder find_dicom(const std::filesystem::path& folder, int depth,
 /// when the whole folder did.
 std::vector<std::filesystem::path> headers_that_crash(const std::filesystem::path& folder, int depth);
 
-/// What a file is that is no CT or MR volume, by its storage class: "a PET image".
-std::string words_of_class(const DicomFile& file);
-
-/// A volume of a cone beam CT, stored as another class than CT.
-bool is_x_ray_3d(const DicomFile& file);
-
 /// Whether a file is a DICOMDIR by its name: it stands for its folder.
 bool is_dicom_directory(const std::filesystem::path& file);
-
-/// The series of that UID or number; else that of `file`; else the only volume. Throws InputError with the list of
-/// series when there is none or more than one, DamagedFileError when a damaged file of the folder is of the series.
-DicomSeries choose_series(const DicomFolder& folder, const std::filesystem::path& path, const std::string& wanted);
 
 }  // namespace planlight

@@ -12,12 +12,12 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <numbers>
 #include <vector>
 
-#include "planning_io/dicom/dicom_folder.h"
+#include "planning_io/dicom/choose_series.h"
 #include "planning_io/dicom/dicom_values.h"
+#include "planning_io/dicom/storage_class.h"
 #include "planning_io/files/header_text.h"
 #include "planning_io/files/memory_need.h"
 #include "planning_io/types/error.h"
@@ -252,9 +252,11 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted, Slice
     for (const auto& file : series.files)
         if (file.damaged) throw DamagedFileError(file.path, "is damaged or cut short in its header", kCopyAgain);
     if (!series.is_volume())
-        throw InputError(path, "is no CT or MR volume but " + words_of_class(series.files.front()),
-                         is_x_ray_3d(series.files.front()) ? "Export it from the scanner's program as CT Image Storage."
-                                                           : "Give a series of CT or MR image objects.");
+        throw InputError(
+            path,
+            "is no CT or MR volume but " +
+                words_of_class(series.files.front().storage_class, series.files.front().modality),
+            is_x_ray_3d(series.files.front().storage_class) ? kExportAsCt : "Give a series of CT or MR image objects.");
     const std::string modality = modality_of(series);
     for (const auto& file : series.files)
         if (file.has_value_table)

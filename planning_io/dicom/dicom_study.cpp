@@ -9,7 +9,7 @@
 #include <array>
 #include <utility>
 
-#include "planning_io/dicom/dicom_folder.h"
+#include "planning_io/dicom/choose_series.h"
 #include "planning_io/files/check_exists.h"
 #include "planning_io/files/sandboxed_process.h"
 #include "planning_io/types/error.h"

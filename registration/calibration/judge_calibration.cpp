@@ -1,5 +1,4 @@
 #include "registration/calibration/judge_calibration.h"
-#include "planning_io/types/statistics.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,16 +6,18 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "planning_io/types/statistics.h"
+#include "registration/calibration/board_stretch.h"
+#include "registration/calibration/camera_fits.h"
+#include "registration/calibration/odd_poses.h"
 
 namespace planlight {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr std::array kCameras{DeviceName::left_camera, DeviceName::right_camera};
 
 /// Of a camera's poses, those whose residual is far above the rest's.
 std::string worst_poses(const std::vector<PoseObservation>& poses, const BundleResult& bundle, DeviceName device) {
@@ -36,16 +37,6 @@ std::string worst_poses(const std::vector<PoseObservation>& poses, const BundleR
     return fmt::format("; most of all {}", fmt::join(names, ", "));
 }
 
-double share_left_out(const BundleResult& bundle, DeviceName name) {
-    const auto d = static_cast<std::size_t>(name);
-    const auto all = static_cast<double>(bundle.used[d] + bundle.left_out[d]);
-    return all > 0 ? static_cast<double>(bundle.left_out[d]) / all : 0;
-}
-
-double rms_of(const BundleResult& bundle, DeviceName name) {
-    return bundle.rms_px[static_cast<std::size_t>(name)];
-}
-
 /// What is off is left out of the residuals: the larger of the two tells.
 std::string misfit_together(const BundleResult& cameras, const CalibrationSettings& s) {
     const double left = rms_of(cameras, DeviceName::left_camera), right = rms_of(cameras, DeviceName::right_camera);
@@ -53,26 +44,6 @@ std::string misfit_together(const BundleResult& cameras, const CalibrationSettin
     const double out =
         std::max(share_left_out(cameras, DeviceName::left_camera), share_left_out(cameras, DeviceName::right_camera));
     return fmt::format("{:.0f} % of the corners do not fit", 100 * out);
-}
-
-/// The cameras adjusted on their corners, on a board that may be stretched.
-BundleResult adjust_corners(const std::vector<PoseObservation>& poses, const BoardSpec& board,
-                            const CalibrationSettings& settings) {
-    const InitialCalibration start = calibrate_cameras_initially(poses, board);
-    BundleSettings corners = settings.bundle;
-    corners.light = false;
-    return start.failure.empty() ? adjust_bundle(poses, board, start.rig, corners) : BundleResult{};
-}
-
-/// One camera adjusted by itself, as the left one of a rig.
-BundleResult camera_alone(const std::vector<PoseObservation>& poses, const BoardSpec& board, DeviceName camera,
-                          const CalibrationSettings& settings) {
-    std::vector<PoseObservation> own = poses;
-    for (PoseObservation& pose : own) {
-        if (camera == DeviceName::right_camera) pose.left = pose.right;
-        pose.right = {};
-    }
-    return adjust_corners(own, board, settings);
 }
 
 /// What the right camera would have seen without its mirror. In a mirrored chessboard the corners are named from the
@@ -92,79 +63,6 @@ BundleResult with_right_mirrored(const std::vector<PoseObservation>& poses, cons
         }
     mirrored = named_as_left(std::move(mirrored), board);
     return adjust_corners(mirrored, board, settings);
-}
-
-bool fits(const BundleResult& bundle, const CalibrationSettings& s) {
-    return bundle.converged && std::all_of(kCameras.begin(), kCameras.end(), [&](DeviceName c) {
-               return rms_of(bundle, c) <= s.max_rms_px && share_left_out(bundle, c) <= s.max_left_out;
-           });
-}
-
-constexpr double kFloor_px = 0.02;  ///< below this a ratio of residuals says nothing
-
-/// A camera that fits its corners by itself, but much worse together with the other.
-struct WorseTogether {
-    DeviceName camera;
-    double by_itself_px, together_px;
-};
-
-std::optional<WorseTogether> worse_together(const std::vector<PoseObservation>& poses, const BoardSpec& board,
-                                            const BundleResult& cameras, const CalibrationSettings& s) {
-    if (!cameras.rig.device(DeviceName::right_camera)) return std::nullopt;
-    for (const DeviceName camera : kCameras) {
-        const BundleResult alone = camera_alone(poses, board, camera, s);
-        const double by_itself = alone.sigma_px[0], together = cameras.sigma_px[static_cast<std::size_t>(camera)];
-        if (alone.converged && together > s.max_worse_together * by_itself + kFloor_px)
-            return WorseTogether{camera, by_itself, together};
-    }
-    return std::nullopt;
-}
-
-std::string said_of_stretch(double stretch) {
-    return fmt::format("both cameras see the board {:.1f} % {} than it should be", 100 * std::abs(stretch),
-                       stretch > 0 ? "longer in its height" : "shorter in its height");
-}
-
-constexpr const char* kStretchRemedy =
-    "Measure the board's width and its height over many squares; print it without scaling to the page, on another "
-    "printer if need be, and capture again.";
-
-/// The height of the board's squares over their width with which both cameras fit best together: the square of the
-/// misfit is a parabola over it.
-BoardSpec best_stretched(const std::vector<PoseObservation>& poses, BoardSpec board,
-                         const CalibrationSettings& settings) {
-    const auto misfit = [&](double stretch) {
-        board.stretch = stretch;
-        const BundleResult result = adjust_corners(poses, board, settings);
-        return result.converged ? result.sigma_px[0] * result.sigma_px[0] + result.sigma_px[1] * result.sigma_px[1]
-                                : std::numeric_limits<double>::quiet_NaN();
-    };
-    double best = board.stretch;
-    for (const double step : {0.01, 0.0025, 0.001}) {
-        const double below = misfit(best - step), here = misfit(best), above = misfit(best + step);
-        const double bend = below + above - 2 * here;
-        if (!(bend > 0)) break;
-        best = std::clamp(best + step * (below - above) / (2 * bend), 0.9, 1.1);
-    }
-    board.stretch = best;
-    return board;
-}
-
-/// A board printed longer one way and rolled between the poses contradicts itself as cameras do that were moved.
-/// Refused as such where its height alone, left free, makes both cameras fit together as well as each by itself.
-std::optional<Refusal> judge_stretch(const std::vector<PoseObservation>& poses, const BoardSpec& board,
-                                     const BundleResult& cameras, const CalibrationSettings& s) {
-    if (!cameras.rig.device(DeviceName::right_camera)) return std::nullopt;
-    constexpr double kLeast = 0.001, kMuchBetter = 0.5;
-    const BoardSpec stretched = best_stretched(poses, board, s);
-    const BundleResult now = adjust_corners(poses, stretched, s);
-    if (!fits(now, s) || std::abs(stretched.stretch - 1) < kLeast || worse_together(poses, stretched, now, s))
-        return std::nullopt;
-    for (const DeviceName camera : kCameras) {
-        const auto c = static_cast<std::size_t>(camera);
-        if (now.sigma_px[c] > kMuchBetter * cameras.sigma_px[c] + kFloor_px) return std::nullopt;
-    }
-    return Refusal{said_of_stretch(stretched.stretch - 1), kStretchRemedy};
 }
 
 std::optional<Refusal> judge_pair(const std::vector<PoseObservation>& poses, const BoardSpec& board,
@@ -203,81 +101,6 @@ double light_by_itself_px(const std::vector<PoseObservation>& poses, const Board
     return median(std::move(misfits));
 }
 
-/// Poses that a device's other poses contradict: over half of what it saw there is left out.
-std::vector<std::size_t> odd_poses(const BundleResult& bundle, DeviceName device) {
-    constexpr std::size_t kLeast = 10;
-    std::vector<std::size_t> odd;
-    for (const PoseResidual& r : bundle.residuals)
-        if (r.device == device && r.used + r.left_out >= kLeast && r.left_out > r.used) odd.push_back(r.pose);
-    std::sort(odd.begin(), odd.end());
-    return odd;
-}
-
-/// When a device that stood otherwise in these poses (at least one) was moved, as far as their place in the order says.
-std::string when_moved(const std::vector<std::size_t>& odd, const std::vector<PoseObservation>& poses,
-                       const RigEstimate& rig) {
-    std::vector<std::size_t> seen;
-    for (std::size_t i = 0; i < poses.size(); ++i)
-        if (rig.rig_from_board[i]) seen.push_back(i);
-    const std::size_t n = std::min(odd.size(), seen.size());
-    if (std::equal(odd.begin(), odd.end(), seen.end() - static_cast<std::ptrdiff_t>(n), seen.end()))
-        return "before " + poses[odd.front()].name;
-    if (std::equal(odd.begin(), odd.end(), seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(n)))
-        return "after " + poses[odd.back()].name;
-    return odd.size() == 1 ? "for that pose" : "for those poses";
-}
-
-/// All poses that contradict the others of one device. Where they are several they draw the adjustment towards
-/// themselves, and only the worst shows: it is left out and the others are asked again.
-struct OddPoses {
-    DeviceName device;
-    std::vector<std::size_t> poses;
-};
-
-std::optional<OddPoses> all_odd_poses(const std::vector<PoseObservation>& poses, const BoardSpec& board,
-                                      BundleResult bundle, const BundleSettings& settings) {
-    std::optional<OddPoses> first, all;
-    const std::size_t seen = bundle.rig.poses();
-    for (;;) {
-        std::vector<std::size_t> odd;
-        for (const DeviceName device : kDevices) {
-            if (!odd.empty() || !bundle.rig.device(device)) continue;
-            odd = odd_poses(bundle, device);
-            if (!odd.empty() && !first) first = all = OddPoses{device, {}};
-        }
-        if (odd.empty()) return all;
-        for (const std::size_t pose : odd) bundle.rig.rig_from_board[pose].reset();
-        all->poses.insert(all->poses.end(), odd.begin(), odd.end());
-        std::sort(all->poses.begin(), all->poses.end());
-        if (first->poses.empty()) first = all;
-        if (2 * bundle.rig.poses() <= seen) return first;  // which of them are odd is open
-        bundle = adjust_bundle(poses, board, bundle.rig, settings);
-        if (!bundle.converged) return first;
-    }
-}
-
-/// A device that was moved before the last pose or after the first contradicts one pose only: a small share of all that
-/// was seen, which no median feels.
-std::optional<Refusal> judge_odd_poses(const std::vector<PoseObservation>& poses, const BoardSpec& board,
-                                       const BundleResult& bundle, const BundleSettings& settings) {
-    const auto odd = all_odd_poses(poses, board, bundle, settings);
-    if (!odd) return std::nullopt;
-    std::vector<std::string> names;
-    for (const std::size_t pose : odd->poses) names.push_back(poses[pose].name);
-    const bool light = odd->device == DeviceName::projector;
-    const char* them = names.size() == 1 ? "that pose" : "those poses";
-    return Refusal{
-        fmt::format("the {}'s {} of {} contradict{} the other poses': {} was moved {}, or its zoom or focus changed, "
-                    "or the pictures of {} are bad",
-                    text_of(odd->device), light ? "light" : "corners", fmt::join(names, ", "), light ? "s" : "",
-                    light ? "the projector, or a camera," : "a camera", when_moved(odd->poses, poses, bundle.rig),
-                    them),
-        fmt::format("If every device stands now as it stood in the other poses, take {} out of the folder and "
-                    "calibrate again; else fix all devices to the rig, and their zoom and focus, and capture all poses "
-                    "again.",
-                    fmt::join(names, ", "))};
-}
-
 std::optional<Refusal> judge_lens(const CameraModel& d, DeviceName name) {
     const double by_width = d.focal_x / d.width, aspect = d.focal_x / d.focal_y;
     const std::string what = text_of(name);
@@ -308,17 +131,6 @@ std::optional<Refusal> judge_lens(const CameraModel& d, DeviceName name) {
     return std::nullopt;
 }
 
-/// How much longer than wide the board's squares seem to be, as a share; 0 unless both cameras say so alike. Cameras
-/// have square pixels: what both see stretched is the board, as a printer's feed does it, and so would be every length
-/// of the patient in one direction.
-double board_stretch(const RigEstimate& rig) {
-    constexpr double kAlike = 2;
-    const auto &left = rig.device(DeviceName::left_camera), &right = rig.device(DeviceName::right_camera);
-    if (!left || !right) return 0;
-    const double a = 1 - left->focal_x / left->focal_y, b = 1 - right->focal_x / right->focal_y;
-    return a * b > 0 && std::abs(a) < kAlike * std::abs(b) && std::abs(b) < kAlike * std::abs(a) ? (a + b) / 2 : 0;
-}
-
 /// Of a camera that is upright to the left one and beside it. Of cameras that are rolled against each other or stand
 /// one above the other, none is the left one by its pictures.
 bool stands_on_the_left(const CameraModel& right) {
@@ -332,7 +144,7 @@ bool stands_on_the_left(const CameraModel& right) {
 
 std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, const BoardSpec& board,
                                      const BundleResult& cameras, const CalibrationSettings& s) {
-    if (!fits(cameras, s)) {
+    if (!cameras_fit(cameras, s)) {
         if (auto refusal = judge_stretch(poses, board, cameras, s)) return refusal;
         for (const DeviceName camera : kCameras) {
             if (!cameras.rig.device(camera)) continue;
@@ -346,7 +158,7 @@ std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, 
                                 worst_poses(poses, alone, DeviceName::left_camera)),
                     "Keep zoom, focus and resolution fixed, use a flat board, and check its count of squares."};
         }
-        if (fits(with_right_mirrored(poses, board, s), s))
+        if (cameras_fit(with_right_mirrored(poses, board, s), s))
             return Refusal{
                 "one camera's pictures are mirrored: the cameras fit each other only when one is turned round",
                 "Switch off the flip in that camera's settings and capture again."};
@@ -389,14 +201,14 @@ std::optional<Refusal> judge_rig(const std::vector<PoseObservation>& poses, cons
                 "Fix all devices to the rig, switch keystone correction and digital zoom off, then capture all poses "
                 "again."};
         if (const double by_itself = light_by_itself_px(poses, board, bundle.rig);
-            rms > s.max_worse_together * by_itself + kFloor_px)
+            rms > s.max_worse_together * by_itself + kResidualFloor_px)
             return Refusal{
                 fmt::format("the light of each pose fits to {:.2f} px by itself, that of all poses only to {:.2f} "
                             "px{}: the projector, or a camera, was moved "
                             "between poses",
                             by_itself, rms, worst_poses(poses, bundle, DeviceName::projector)),
                 "Fix all devices to the rig, then capture all poses again."};
-        if (!fits(bundle, s))
+        if (!cameras_fit(bundle, s))
             return Refusal{"the cameras fit the board, but not together with the light",
                            "Fix all devices to the rig, then capture all poses again."};
         if (auto refusal = judge_odd_poses(poses, board, bundle, s.bundle)) return refusal;

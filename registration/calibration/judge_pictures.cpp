@@ -14,7 +14,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr std::array kCameras{DeviceName::left_camera, DeviceName::right_camera};
 
 bool has(const std::vector<PoseObservation>& poses, DeviceName camera) {
     return std::any_of(poses.begin(), poses.end(),

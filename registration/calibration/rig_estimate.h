@@ -15,6 +15,7 @@ namespace planlight {
 /// As they are numbered wherever an array is by device.
 enum class DeviceName { left_camera, right_camera, projector };
 inline constexpr std::array kDevices{DeviceName::left_camera, DeviceName::right_camera, DeviceName::projector};
+inline constexpr std::array kCameras{DeviceName::left_camera, DeviceName::right_camera};
 const char* text_of(DeviceName device);
 
 /// What a calibration finds. The rig frame is that of the left camera (the only camera, where there is one).

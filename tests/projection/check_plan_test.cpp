@@ -11,6 +11,7 @@
 #include "projection/draw_plan.h"
 #include "projection/mid_plane.h"
 #include "projection/plan_sides.h"
+#include "projection/said_frame.h"
 #include "tests/projection/shapes.h"
 #include "tests/support/analytic_head.h"
 
