@@ -274,10 +274,12 @@ int run_track(const TrackOptions& options) {
     const auto frames = read_frames(options.frames);
     if (frames.empty())
         throw InputError(options.frames, "there is no frame in the folder", "Record at least one frame.");
-    refuse_colour_mosaic(frames.front().left, frames.front().right);
     const MarkerDesign design = marker_design_named(options.markers);
     const Reference reference = reference_of(options, rig, frames);
-    refuse_colour_mosaic(reference.frame.left, reference.frame.right);
+    for (const StereoFrame* frame : {&frames.front(), &reference.frame}) {
+        refuse_colour_mosaic(frame->left, "left");
+        refuse_colour_mosaic(frame->right, "right");
+    }
     PatientTracker tracker(reference.origin.rig, tracking_settings_for(design));
     const auto markers = tracker.set_reference(reference.frame).size();
     judge_reference(tracker, reference.frame, reference.origin.rig, design);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "registration/devices/colour_mosaic.h"
+
 namespace planlight {
 namespace {
 
@@ -68,7 +70,7 @@ std::optional<Refusal> judge_picture(const PoseObservation& pose, DeviceName cam
     if (seen.colour_mosaic)
         return Refusal{
             fmt::format("{}: these are raw pictures of a colour camera: every second pixel is brighter", where),
-            "Set the camera's pixel format to Mono8, or convert the pictures to grey before they are given."};
+            kColourMosaicRemedy};
     if (seen.corners.size() == 0) return std::nullopt;
     // A lens bends the board by a share of its width, however small its squares are.
     constexpr double kOffPlane = 0.15, kOffPlaneByColumns = 0.015;

@@ -52,13 +52,12 @@ bool is_colour_mosaic(const GrayImage& picture) {
            static_cast<double>(std::max(green[0], green[1])) > kNearlyAll * static_cast<double>(ratios.size());
 }
 
-void refuse_colour_mosaic(const GrayImage& left, const GrayImage& right) {
-    for (const GrayImage* picture : {&left, &right})
-        if (is_colour_mosaic(*picture))
-            throw CheckFailedError(
-                fmt::format("the {} camera: these are raw pictures of a colour camera: every second pixel is brighter",
-                            picture == &left ? "left" : "right"),
-                "Set the camera's pixel format to Mono8, or convert the pictures to grey before they are given.");
+void refuse_colour_mosaic(const GrayImage& picture, const char* camera) {
+    if (is_colour_mosaic(picture))
+        throw CheckFailedError(
+            fmt::format("the {} camera: these are raw pictures of a colour camera: every second pixel is brighter",
+                        camera),
+            kColourMosaicRemedy);
 }
 
 }  // namespace planlight

@@ -9,7 +9,10 @@ namespace planlight {
 /// everywhere where there is light. Interlaced lines, columns of unlike gain, noise and texture do not do that.
 bool is_colour_mosaic(const GrayImage& picture);
 
-/// Throws CheckFailedError where a camera's picture is one; `right` may be empty.
-void refuse_colour_mosaic(const GrayImage& left, const GrayImage& right);
+inline constexpr const char* kColourMosaicRemedy =
+    "Set the camera's pixel format to Mono8, or convert the pictures to grey before they are given.";
+
+/// Throws CheckFailedError where the picture of that camera ("left") is one.
+void refuse_colour_mosaic(const GrayImage& picture, const char* camera);
 
 }  // namespace planlight

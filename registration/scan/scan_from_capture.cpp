@@ -49,11 +49,6 @@ SequenceCheck sequence_of(const std::vector<GrayImage>& frames, const ScanCaptur
     return whole ? check_sequence(frames, capture.stripes) : SequenceCheck{};
 }
 
-/// Under white light; empty where there is no such camera.
-GrayImage first_of(const std::vector<GrayImage>& frames) {
-    return frames.empty() ? GrayImage{} : frames.front();
-}
-
 void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
     tbb::parallel_invoke([&] { result.left_sequence = sequence_of(capture.left, capture); },
                          [&] { result.right_sequence = sequence_of(capture.right, capture); });
@@ -186,7 +181,8 @@ ScanResult scan_from_exposures(std::span<const ScanCapture> captures, const RigC
     Stopwatch watch;
     for (const ScanCapture& capture : captures) {
         check_devices(capture, rig);
-        refuse_colour_mosaic(first_of(capture.left), first_of(capture.right));
+        if (!capture.left.empty()) refuse_colour_mosaic(capture.left.front(), "left");
+        if (!capture.right.empty()) refuse_colour_mosaic(capture.right.front(), "right");
         ScanResult one;
         if (settings.check_sequence && capture.check_sequence) refuse_wrong_sequence(capture, one);
         result.sequence_s += watch.lap_s();

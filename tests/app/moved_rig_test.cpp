@@ -194,6 +194,28 @@ TEST_F(MovedRig, FramesOfExchangedCamerasOrOfAnotherRigAreNamed) {
     EXPECT_FALSE(fs::exists(root() / "never.json"));
 }
 
+/// Its poses agree as before, and are wrong: the left camera was knocked by two pixels sideways since the scan.
+TEST_F(MovedRig, FramesOfACameraThatWasKnockedSinceTheScanAreWarnedOf) {
+    prepared();
+    simulated();
+    fs::copy(root() / "room" / "frames", root() / "knocked", fs::copy_options::recursive);
+    for (const auto& entry : fs::directory_iterator(root() / "knocked" / "left")) {
+        const GrayImage as_seen = read_gray(entry.path());
+        GrayImage moved = as_seen;
+        for (int y = 0; y < moved.height; ++y)
+            for (int x = 2; x < moved.width; ++x) moved.at(x, y) = as_seen.at(x - 2, y);
+        write_png(moved, entry.path());
+    }
+    const auto track = [](const std::string& frames) {
+        return run("track " + frames + " --rig room/rig.json --capture room/capture --out poses-of-it.json");
+    };
+    const auto before = track("room/frames"), after = track("knocked");
+    EXPECT_EQ(before.exit_code, 0) << before.err;
+    EXPECT_EQ(before.err.find("fit the cameras worse"), std::string::npos) << before.err;
+    EXPECT_EQ(after.exit_code, 0) << after.err;
+    EXPECT_NE(after.err.find("fit the cameras worse than in the scan"), std::string::npos) << after.err;
+}
+
 TEST_F(MovedRig, AnEditedMatchAndLightThatFallsNowhereAreRefused) {
     prepared();
     simulated();

@@ -60,16 +60,28 @@ Edge edge_between(const std::vector<End>& ends, double from, double to, bool lit
     return {x.size(), std::hypot(reach(x), reach(y)) > kLong * std::max(view.width, view.height)};
 }
 
+/// One in a thousand decoded pixels has a higher code; 0 where few are decoded.
+double last_code(const LargeArray<float>& code, int size) {
+    constexpr std::size_t kFew = 7000, kAbove = 1000;
+    std::vector<std::size_t> pixels(static_cast<std::size_t>(size) + 1, 0);
+    std::size_t decoded = 0;
+    for (const float c : code) {
+        if (std::isnan(c)) continue;
+        ++pixels[static_cast<std::size_t>(std::clamp(c + 0.5F, 0.F, static_cast<float>(size)))];
+        ++decoded;
+    }
+    if (decoded < kFew) return 0;
+    std::size_t above = 0, last = pixels.size();
+    while (above * kAbove <= decoded) above += pixels[--last];
+    return static_cast<double>(last);
+}
+
 /// What is wrong with one direction; empty: nothing.
 std::optional<SequenceProblem> problem_of(const DecodedView& view, const LargeArray<float>& code,
                                           const GrayImage& white, const GrayImage& black, int size, const char* what) {
-    constexpr double kNear_px = 3, kZone_px = 20, kMostCropped = 0.05, kStraight = 0.85, kLast = 0.999;
-    std::vector<double> codes;
-    constexpr std::size_t kEvery = 7;
-    for (std::size_t i = 0; i < code.size(); i += kEvery)
-        if (!std::isnan(code[i])) codes.push_back(code[i]);
-    if (codes.size() < 1000) return std::nullopt;
-    const double last = quantile(std::move(codes), kLast);
+    constexpr double kNear_px = 3, kZone_px = 20, kMostCropped = 0.05, kStraight = 0.85;
+    const double last = last_code(code, size);
+    if (last == 0) return std::nullopt;
     const bool early = last < (1 - kMostCropped) * size;
     if (!early && last < size - kNear_px - 1) return std::nullopt;
     const std::vector<End> ends = ends_of(view, code, white, black);

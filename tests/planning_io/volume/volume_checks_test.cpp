@@ -11,15 +11,24 @@
 namespace planlight {
 namespace {
 
+/// A cube of voxels by their distance from its middle and from its third axis.
+template <class Value>
+Volume cube_of(int size, Value value) {
+    Volume volume;
+    volume.size = {size, size, size};
+    const double middle = (size - 1) / 2.0;
+    for (int k = 0; k < size; ++k)
+        for (int j = 0; j < size; ++j)
+            for (int i = 0; i < size; ++i) {
+                const double from_axis = std::hypot(i - middle, j - middle);
+                volume.values.push_back(value(std::hypot(from_axis, k - middle), from_axis));
+            }
+    return volume;
+}
+
 /// A ball in air.
 Volume ball_of(float body, float air) {
-    Volume volume;
-    volume.size = {40, 40, 40};
-    for (int k = 0; k < 40; ++k)
-        for (int j = 0; j < 40; ++j)
-            for (int i = 0; i < 40; ++i)
-                volume.values.push_back(std::hypot(i - 19.5, std::hypot(j - 19.5, k - 19.5)) < 15 ? body : air);
-    return volume;
+    return cube_of(40, [&](double r, double) { return r < 15 ? body : air; });
 }
 
 TEST(ModalityByValues, SoftTissueInAirIsACtInHuAndOtherValuesAnMr) {
@@ -45,15 +54,10 @@ TEST(ModalityByValues, AnMrFromWhich1024WasTakenIsNoCtAndItsHeadIsThere) {
 /// An MR whose voxels outside of a circle were set to -1024.
 TEST(ModalityByValues, PaddingOfAnMrIsNoAirOfACt) {
     std::mt19937 random(3);
-    Volume mr;
-    mr.size = {40, 40, 40};
-    for (int k = 0; k < 40; ++k)
-        for (int j = 0; j < 40; ++j)
-            for (int i = 0; i < 40; ++i) {
-                const double r = std::hypot(i - 19.5, std::hypot(j - 19.5, k - 19.5));
-                const float noise = static_cast<float>(random() % 20);
-                mr.values.push_back(std::hypot(i - 19.5, j - 19.5) > 19 ? -1024.F : (r < 13 ? 300.F : 0.F) + noise);
-            }
+    Volume mr = cube_of(40, [&](double r, double from_axis) {
+        const float noise = static_cast<float>(random() % 20);
+        return from_axis > 19 ? -1024.F : (r < 13 ? 300.F : 0.F) + noise;
+    });
     Volume same_ct = mr;  // as a CT: the air inside the circle is air
     for (float& v : same_ct.values)
         if (v >= 0 && v < 20) v -= 1000;
@@ -71,15 +75,10 @@ TEST(ModalityByValues, ACtToWhichAThousandWasAddedIsACt) {
     std::mt19937 random(5);
     std::normal_distribution<float> noise(0, 12);
     for (const float added : {1024.F, 1000.F}) {
-        Volume ct;
-        ct.size = {60, 60, 60};
-        for (int k = 0; k < 60; ++k)
-            for (int j = 0; j < 60; ++j)
-                for (int i = 0; i < 60; ++i) {
-                    const double r = std::hypot(i - 29.5, std::hypot(j - 29.5, k - 29.5));
-                    const float hu = r > 25 ? -1000.F : r > 22 ? -20.F : r > 20 ? 900.F : 35.F;
-                    ct.values.push_back(std::max(0.F, hu + added + noise(random)));
-                }
+        Volume ct = cube_of(60, [&](double r, double) {
+            const float hu = r > 25 ? -1000.F : r > 22 ? -20.F : r > 20 ? 900.F : 35.F;
+            return std::max(0.F, hu + added + noise(random));
+        });
         const float skin = ct.values[ct.index(30, 30, 53)];
         tell_modality_by_values(ct);
         EXPECT_EQ(ct.modality, "CT");
@@ -95,15 +94,10 @@ TEST(ModalityByValues, AnMrOfTheSameGreysIsNoCt) {
     std::mt19937 random(5);
     std::normal_distribution<float> noise(0, 40);
     for (const float scale : {0.6F, 0.8F, 1.F, 1.2F, 1.5F}) {
-        Volume mr;
-        mr.size = {60, 60, 60};
-        for (int k = 0; k < 60; ++k)
-            for (int j = 0; j < 60; ++j)
-                for (int i = 0; i < 60; ++i) {
-                    const double r = std::hypot(i - 29.5, std::hypot(j - 29.5, k - 29.5));
-                    const float grey = r > 25 ? 20.F : r > 22 ? 1600.F : r > 20 ? 200.F : r > 15 ? 800.F : 1100.F;
-                    mr.values.push_back(std::max(0.F, scale * (grey + noise(random))));
-                }
+        Volume mr = cube_of(60, [&](double r, double) {
+            const float grey = r > 25 ? 20.F : r > 22 ? 1600.F : r > 20 ? 200.F : r > 15 ? 800.F : 1100.F;
+            return std::max(0.F, scale * (grey + noise(random)));
+        });
         tell_modality_by_values(mr);
         EXPECT_EQ(mr.modality, "MR") << scale;
     }
