@@ -28,7 +28,7 @@ const std::map<std::string, std::vector<std::string>> kServes{
     {"app/commands/simulate_served.cpp", {"simulate"}},
     {"app/live/show_light.cpp", {"projector"}},
     {"app/console.cpp", {"demo", "merge", "register"}},
-    {"planning_io/dicom/dicom_folder.cpp", {"prepare", "plan", "demo", "simulate", "session"}},
+    {"planning_io/dicom/choose_series.cpp", {"prepare", "plan", "demo", "simulate", "session"}},
     {"app/live/shown_replay.cpp", {"replay"}},
     {"app/report/moment_comparison.cpp", {"review"}},
     {"app/commands/pdf_option.cpp", {"prepare", "register", "calibrate", "projector", "demo", "report"}},

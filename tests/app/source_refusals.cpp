@@ -94,9 +94,23 @@ std::size_t find_outside(const std::string& expression, char sign, std::size_t f
     return std::string::npos;
 }
 
+/// A file of the product, and the project's headers that it includes.
+struct Source {
+    std::string text, headers;
+};
+
+Source read_source(const fs::path& file, const fs::path& root) {
+    Source read{text_of(file), {}};
+    static const std::regex kInclude("#include \"([^\"]+)\"");
+    for (std::sregex_iterator it(read.text.begin(), read.text.end(), kInclude), end; it != end; ++it)
+        read.headers += text_of(root / (*it)[1].str());
+    return read;
+}
+
 /// Where an expression stands.
 struct Place {
     const std::string& source;
+    const std::string& headers;
     std::size_t function = 0, at = 0;          ///< where its function begins, and where it is
     std::map<std::string, std::string> given;  ///< parameters of that function, in words
     int depth = 0;                             ///< of names that stand for names
@@ -124,20 +138,27 @@ bool is_of_words(const std::string& expression) {
     return bare.find('"') != std::string::npos;
 }
 
-/// What a name was set to: a constant of the file, or a text of the same function before the place; empty: neither.
-std::optional<std::string> value_of(const std::string& name, const Place& place) {
-    const bool constant = name.size() > 1 && name[0] == 'k' && std::isupper(static_cast<unsigned char>(name[1])) != 0;
-    const std::size_t begin = constant ? 0 : place.function, end = constant ? place.source.size() : place.at;
+/// What a name is last set to between two places of a text; empty: to nothing that is words.
+std::optional<std::string> last_set(const std::string& name, const std::string& text, std::size_t begin,
+                                    std::size_t end) {
     std::optional<std::string> last;
     for (const std::string& sign : {name + " =", name + "[] ="})
-        for (std::size_t at = place.source.find(sign, begin); at < end; at = place.source.find(sign, at + 1)) {
-            if (at == 0 || is_of_a_name(place.source[at - 1])) continue;
-            const std::size_t value = at + sign.size(), stop = find_outside(place.source, ';', value);
-            if (stop >= end && !constant) continue;
-            if (place.source[value] == '=' || stop == std::string::npos) continue;
-            if (const std::string text = place.source.substr(value, stop - value); is_of_words(text)) last = text;
+        for (std::size_t at = text.find(sign, begin); at < end; at = text.find(sign, at + 1)) {
+            if (at == 0 || is_of_a_name(text[at - 1])) continue;
+            const std::size_t value = at + sign.size(), stop = find_outside(text, ';', value);
+            if (stop >= end || text[value] == '=') continue;
+            if (const std::string words = text.substr(value, stop - value); is_of_words(words)) last = words;
         }
     return last;
+}
+
+/// What a name was set to: a constant of the file or of a header, or a text of the same function before the place;
+/// empty: none of these.
+std::optional<std::string> value_of(const std::string& name, const Place& place) {
+    const bool constant = name.size() > 1 && name[0] == 'k' && std::isupper(static_cast<unsigned char>(name[1])) != 0;
+    if (!constant) return last_set(name, place.source, place.function, place.at);
+    const auto of_the_file = last_set(name, place.source, 0, place.source.size());
+    return of_the_file ? of_the_file : last_set(name, place.headers, 0, place.headers.size());
 }
 
 /// Of a name of the expression: its words; empty: nothing is known of it.
@@ -290,10 +311,10 @@ std::vector<Call> calls_of(const Teller& teller, const std::string& source, std:
 }
 
 /// The expressions in words; where one of them is nothing but what the function was given, once for each call of it.
-std::vector<Said> said_at(const std::string& source, std::size_t at, const std::vector<std::string>& expressions,
-                          int depth) {
+std::vector<Said> said_at(const Source& file, std::size_t at, const std::vector<std::string>& expressions, int depth) {
     constexpr int kDeepest = 2;
-    Place place{source, function_of(source, at), at, {}, 0};
+    const std::string& source = file.text;
+    Place place{source, file.headers, function_of(source, at), at, {}, 0};
     const auto in_words = [&](std::size_t where) {
         Said said{where, {}};
         for (const std::string& expression : expressions) said.words.push_back(words(expression, place));
@@ -313,7 +334,7 @@ std::vector<Said> said_at(const std::string& source, std::size_t at, const std::
             for (std::size_t i = call.arguments.size(); i < teller.parameters.size(); ++i)
                 call.arguments.push_back(teller.defaults[i]);
             if (call.arguments.size() != teller.parameters.size()) continue;
-            for (const Said& one : said_at(source, call.at, call.arguments, depth + 1)) {
+            for (const Said& one : said_at(file, call.at, call.arguments, depth + 1)) {
                 for (std::size_t i = 0; i < one.words.size(); ++i) place.given[teller.parameters[i]] = one.words[i];
                 all.push_back(in_words(one.at));
             }
@@ -337,7 +358,8 @@ std::vector<SourceRefusal> refusals_in_sources(const fs::path& root) {
         "\\(");
     std::vector<SourceRefusal> found;
     for (const fs::path& file : files) {
-        const std::string source = text_of(file);
+        const Source read = read_source(file, root);
+        const std::string& source = read.text;
         for (std::sregex_iterator it(source.begin(), source.end(), kThrow), end; it != end; ++it) {
             const auto at = static_cast<std::size_t>(it->position());
             if (at >= 4 && source.substr(at - 4, 4).find("::") != std::string::npos) continue;  // another library's
@@ -350,7 +372,7 @@ std::vector<SourceRefusal> refusals_in_sources(const fs::path& root) {
             if (given.size() < problem + 2) continue;
             std::vector<std::string> expressions{given[problem], given[problem + 1]};
             if (kind == "DeviceError") expressions.push_back(given[0]);
-            for (const Said& said : said_at(source, at, expressions, 0)) {
+            for (const Said& said : said_at(read, at, expressions, 0)) {
                 SourceRefusal refusal;
                 refusal.file = fs::relative(file, root).string();
                 refusal.line = static_cast<int>(std::count(
