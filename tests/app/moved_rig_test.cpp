@@ -125,6 +125,7 @@ TEST_F(MovedRig, PosesAreMeasuredWithTheRigThatTheScanFound) {
         ASSERT_EQ(track.exit_code, 0) << track.err;
         const auto lit = draw("right-rig.json", "right.json", "right-poses.json", "right-moved.png");
         ASSERT_EQ(lit.exit_code, 0) << lit.err;
+        EXPECT_NE(lit.err.find("the light of recorded poses was not measured"), std::string::npos) << lit.err;
         EXPECT_LT((middle_of(root() / "right-moved.png") - middle_of(root() / "good-moved.png")).norm(), 1);
     }
 }
