@@ -12,6 +12,7 @@ SkinCheck Session::measure_skin(const std::function<void(int, int)>& progress) {
     if (!registration_ || registration_->verdict == Verdict::no)
         throw CheckFailedError("there is no match to compare the skin with", "Scan and register first.");
     overlay_.reset();
+    forget_last_light();  // stripes take its place
     projector_.go_dark();
     const ScanCapture capture =
         capture_scan(projector_, cameras_, clock_, fast_stripes(projector_.width(), projector_.height()), progress);

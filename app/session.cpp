@@ -139,6 +139,7 @@ void Session::make_scan(const std::function<void(int, int)>& progress) {
 
 void Session::use_rig(const RigCalibration& rig) {
     overlay_.reset();
+    forget_last_light();
     rig_ = rig;
     tracker_ = PatientTracker(rig_, settings_.tracking);
     set_hidden({});
@@ -203,6 +204,7 @@ void Session::match(const std::vector<PointPair>& landmarks) {
     settings.viewpoint_in_rig = rig_.projector.centre_in_rig();
     confirmed_ = false;
     overlay_.reset();
+    forget_last_light();
     landmarks_.reset();
     rig_from_patient_ = RigidTransform::Identity();
     lit_landmark_.reset();
@@ -240,10 +242,11 @@ void Session::start_overlay() {
     if (confirmed_) overlay_->set_operator_confirmed(true);
     overlay_->set_found_delay(found_delay_);
     overlay_->set_brightness(brightness_.share());
-    const auto looked_at = lit_landmark_ ? lit_landmark_ : item_of_moment_;
+    bright_item_ = lit_landmark_ ? lit_landmark_ : item_of_moment_;
     const bool others_lit = !lit_landmark_ && settings_.overlay.render.others > 0;
-    checker_.emplace(looked_at ? lit_with(lit_drawing(), *looked_at, others_lit) : lit_drawing(), skin_of_light(), rig_,
-                     settings_.check_light, looked_at);
+    looked_for_ = std::make_shared<const PlanDrawing>(bright_item_ ? lit_with(lit_drawing(), *bright_item_, others_lit)
+                                                                   : lit_drawing());
+    checker_.emplace(*looked_for_, skin_of_light(), rig_, settings_.check_light, bright_item_);
     tracker_.set_places(places_of_light(lit_drawing(), registration_->patient_from_ct));
     watch_.emplace(rig_, settings_.light_cause);
     jumps_.emplace(rig_);

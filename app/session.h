@@ -13,6 +13,7 @@
 #include "planning_io/types/registration_result.h"
 #include "planning_io/types/rig_calibration.h"
 #include "projection/check_light.h"
+#include "projection/darkness_check.h"
 #include "projection/light_brightness.h"
 #include "projection/light_watch.h"
 #include "projection/overlay_loop.h"
@@ -39,6 +40,9 @@ struct SessionSettings {
     int max_scans = 3;                    ///< so often at most, then refused
     double max_motion_in_skin_check_mm = 0.3;  ///< of any marker during a check of the skin; above: no answer
     ResumeSettings resume;
+    /// From the beginning of the last light until a frame that still shows it tells of a projector that does not go
+    /// out.
+    std::chrono::milliseconds time_to_dark{500};
     int min_reference_markers = 5;  ///< found in both pictures at the scan
     std::chrono::milliseconds patience{1000};
     /// While following: without a pair of frames for so long, or for three frame intervals where that is more, the
@@ -128,6 +132,7 @@ public:
         /// The light of the picture before, as this frame shows it; empty where it was not looked at, or not lit for
         /// the whole exposure.
         std::optional<LightCheck> light;
+        bool light_stays = false;        ///< it is dark, and the last light is still seen (`Session::light_stays`)
         std::string camera_doubt;        ///< what is wrong with the cameras though frames come; empty: nothing
         std::vector<LightCause> causes;  ///< of light that is not where it belongs, likeliest first; empty: none
     };
@@ -171,6 +176,10 @@ public:
     const PlanDrawing& lit_drawing() const {
         return lit_landmark_ ? landmark_drawing_ : without_hidden_ ? *without_hidden_ : drawing();
     }
+
+    /// Between updates: whether the last light, put out `SessionSettings::time_to_dark` ago or longer, is seen in this
+    /// frame and in one before it (`DarknessCheck`). False where nothing was lit since the last scan or match.
+    bool light_stays(const StereoFrame& frame);
 
     /// How much later than told the light of this match was found to be; it is drawn ahead by that.
     Instant found_delay() const { return found_delay_; }
@@ -225,6 +234,8 @@ private:
     const SkinSurface& skin_of_light() const { return now_ ? now_->skin : planned_.skin; }
     void watch_light(Update& update);
     void note_shown(const OverlayStep& overlay);
+    bool sees_last_light(const StereoFrame& frame, const std::function<std::optional<RigidTransform>()>& find_patient);
+    void forget_last_light();
     void correct_delay(std::vector<LightCause>& causes);
 
     const Case& case_;
@@ -248,6 +259,18 @@ private:
     std::optional<LightWatch> watch_;
     std::optional<PictureJumps> jumps_;
     LightBrightness brightness_;
+    /// What the checker looks for: what is lit, or the one item that is bright.
+    std::shared_ptr<const PlanDrawing> looked_for_;
+    std::optional<std::size_t> bright_item_;
+    struct LastLight {
+        Instant lit_from{};
+        RigidTransform rig_from_ct;
+        std::shared_ptr<const PlanDrawing> drawing;
+        std::optional<std::size_t> bright_item;
+    };
+    std::optional<LastLight> last_light_;  ///< on the skin of now; empty: none, or stripes since
+    std::unique_ptr<DarknessCheck> darkness_;
+    Instant darkness_looked_at_{};
     std::vector<ShownPicture> shown_;
     RenderCounts counts_shown_;  ///< of the last picture
     Instant found_delay_{};

@@ -39,6 +39,8 @@ Session::Update Session::make_update() {
     watch_light(update);
     update.times.check_s = elapsed_s(checking_began);
     note_shown(update.overlay);
+    update.light_stays =
+        !update.overlay.lit && sees_last_light(update.frame, [&] { return update.pose.rig_from_patient; });
     correct_delay(update.causes);
     return update;
 }
@@ -86,6 +88,8 @@ void Session::note_shown(const OverlayStep& overlay) {
         return;
     }
     if (lit_since_ == Instant::max()) lit_since_ = overlay.lit_from + found_delay_;
+    darkness_.reset();
+    last_light_ = {overlay.lit_from + found_delay_, overlay.rig_from_ct, looked_for_, bright_item_};
     counts_shown_ = overlay.counts;
     shown_.push_back({overlay.lit_from + found_delay_, overlay.rig_from_ct});
     if (shown_.size() > kKept) shown_.erase(shown_.begin());
@@ -127,6 +131,37 @@ void Session::correct_delay(std::vector<LightCause>& causes) {
     overlay_->set_found_delay(found_delay_);
     watch_->forget();
     shown_.clear();
+}
+
+void Session::forget_last_light() {
+    last_light_.reset();
+    darkness_.reset();
+}
+
+bool Session::light_stays(const StereoFrame& frame) {
+    return sees_last_light(frame, [&] {
+        PatientTracker tracker = tracker_;  // as it will be when the patient is followed again
+        return tracker.update(frame).rig_from_patient;
+    });
+}
+
+/// A few looks a second, each of a millisecond and the more where the head has moved.
+bool Session::sees_last_light(const StereoFrame& frame,
+                              const std::function<std::optional<RigidTransform>()>& find_patient) {
+    constexpr Instant kEvery = std::chrono::milliseconds(250);
+    if (!last_light_ || !registration_) return false;
+    if (frame.at - frame.exposure / 2 < last_light_->lit_from + settings_.time_to_dark) return false;
+    if (!darkness_)
+        darkness_ =
+            std::make_unique<DarknessCheck>(*last_light_->drawing, skin_of_light(), rig_, last_light_->rig_from_ct,
+                                            settings_.check_light, last_light_->bright_item);
+    else if (frame.at < darkness_looked_at_ + kEvery)
+        return darkness_->lit();
+    darkness_looked_at_ = frame.at;
+    const auto rig_from_patient = find_patient();
+    return darkness_->look(
+        frame, rig_from_patient ? std::optional<RigidTransform>(*rig_from_patient * registration_->patient_from_ct)
+                                : std::nullopt);
 }
 
 /// CHECK: the frame was exposed under the light of the updates before; was there light for all of the exposure?

@@ -300,7 +300,8 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
             return ruling;
         }
         ruling.headline = fmt::format("Dark: the light lay {} mm beside the plan.", said(stopped_at_mm_));
-        ruling.details = {"The cameras measured it twice.", "Scan again; if it comes back, run `planlight check`."};
+        ruling.details = {"Measured twice. Take away what lies on the lines (a swab, a drape), and press Track.",
+                          "If it comes back scan again, and if that does not help run `planlight check`."};
         return ruling;
     }
     ruling.trust = LightTrust::look;

@@ -157,11 +157,23 @@ OperatorModel LiveSession::model() const {
     const std::lock_guard lock(mutex_);
     OperatorModel now = model_;
     view_.put_into(now);
-    if (darks_answered_ == darks_) return now;
-    now.status = dark_status(state_, scan_there_);  // DARK was pressed, and the thread is still at something else
-    now.scene.light = nullptr;
-    now.confirm = now.check_skin = false;
+    if (darks_answered_ != darks_) {
+        now.status = dark_status(state_, scan_there_);  // DARK was pressed, and the thread is still at something else
+        now.scene.light = nullptr;
+        now.confirm = now.check_skin = false;
+    }
+    if (light_stays_) now.status = light_stays_status();
     return now;
+}
+
+/// In place of whatever else is to be said, until it is dark or light is asked for.
+void LiveSession::say_whether_light_stays(bool stays) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (light_stays_ == stays) return;
+        light_stays_ = stays;
+    }
+    said();
 }
 
 LiveSession::Light LiveSession::light() const {

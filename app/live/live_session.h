@@ -140,7 +140,8 @@ private:
     std::uint64_t darks_now() const;
     std::string refused_press(OperatorAction action) const;
     void begin(const Press& press);
-    void look(const Session& session, Room& room);
+    void look(Session& session, Room& room);
+    void say_whether_light_stays(bool stays);
     Press next_press(Instant longest);
     void permit_light(const Press& press);
     void show_alive();
@@ -186,6 +187,7 @@ private:
     std::atomic<unsigned> looks_asked_{0};  ///< before light, by the window's thread
     unsigned looked_ = 0;                   ///< of these, that were done; by the session's thread
     std::optional<KeptMatch> away_;         ///< this session's own, while it is not known whether it still holds
+    bool light_stays_ = false;              ///< it was put out, and the cameras still see it
     bool ending_ = false, following_ = false;
     std::atomic<bool> projecting_{false};
     std::atomic<Instant::rep> alive_at_{0};

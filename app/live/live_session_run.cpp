@@ -55,7 +55,7 @@ private:
 };
 
 /// A picture for the window while nothing else is made of it; what a camera lacks is said in its place.
-void LiveSession::look(const Session& session, Room& room) {
+void LiveSession::look(Session& session, Room& room) {
     constexpr auto kPatience = std::chrono::milliseconds(250);
     view_.expect_found(true);
     try {
@@ -67,6 +67,7 @@ void LiveSession::look(const Session& session, Room& room) {
             return shown;
         };
         view_.found(frame.at, found(frame.left), found(frame.right));
+        say_whether_light_stays(session.light_stays(frame));
     } catch (const DeviceError& fault) {
         view_.failed(std::string(fault.what()) + ". " + fault.remedy);
     }
@@ -111,6 +112,7 @@ void LiveSession::run(const MakeRoom& make_room) {
         show_alive();
         if (press.action == OperatorAction::quit) return;
         if (press.action == OperatorAction::none && !following_) {
+            room->resting(room->look_interval());
             look(session, *room);
             continue;
         }
@@ -200,7 +202,10 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
     begin(press);
     // A scan's pictures are stripes, in which nobody looks for markers.
     view_.expect_found(press.action != OperatorAction::scan && press.action != OperatorAction::check_skin);
-    if (asks_for_light(press.action)) permit_light(press);
+    if (asks_for_light(press.action)) {
+        permit_light(press);
+        say_whether_light_stays(false);  // what is seen from now on is asked for
+    }
     switch (press.action) {
         case OperatorAction::scan:
             begin_anew(session, room);

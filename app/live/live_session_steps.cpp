@@ -250,6 +250,7 @@ void LiveSession::follow(Session& session, Room& room) {
     const auto update = session.update();
     if (!light_permitted()) return;  // DARK was pressed meanwhile; its own turn comes next
     seen_at_ = update.frame.at;
+    say_whether_light_stays(update.light_stays);
     LightGate::Ruling ruling =
         gate_.step(seen_at_, update.overlay.lit, update.light, update.causes, update.pose.external_reliability_mm);
     if (ruling.stop) {

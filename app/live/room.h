@@ -31,6 +31,8 @@ public:
     virtual RoomKind kind() const { return RoomKind::real; }
     /// What a simulated room needs to be told: computing takes time there as well, and its patient moves on request.
     virtual void computing() {}
+    /// And time goes by while nobody wants anything.
+    virtual void resting(Instant) {}
     virtual void let_patient_move(bool) {}
     /// The fault that a simulated room was asked to show begins now.
     virtual void begin_fault() {}

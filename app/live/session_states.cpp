@@ -192,6 +192,14 @@ Status dark_status(SessionState state, bool scan_there) {
             {}};
 }
 
+Status light_stays_status() {
+    return {StatusKind::refused,
+            "The light does not go out: cover the projector's lens.",
+            {"The cameras see it on the skin, though it was put out.",
+             "Its picture is frozen (Freeze on its remote control), or the video link hangs on an old one."},
+            {}};
+}
+
 void enter(SessionState state, const OperatorModel& blank, OperatorModel& model, bool scan_there) {
     const SessionView& view = view_of(state);
     const auto button = [](const char* no) { return ButtonState{no == nullptr, no == nullptr ? "" : no}; };

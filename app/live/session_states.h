@@ -82,4 +82,7 @@ void show_no_light(OperatorModel& model);
 /// What is said after DARK in that state; where its scan was given up, to scan.
 Status dark_status(SessionState state, bool scan_there = true);
 
+/// It was put out, and the cameras still see it (`Session::light_stays`).
+Status light_stays_status();
+
 }  // namespace planlight

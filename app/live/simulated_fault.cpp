@@ -6,7 +6,7 @@ namespace planlight {
 
 const std::vector<std::string>& simulated_faults() {
     static const std::vector<std::string> names{"projector", "left-camera", "right-camera", "marker",
-                                                "markers",   "late",        "no-picture"};
+                                                "markers",   "late",        "no-picture",   "frozen"};
     return names;
 }
 
@@ -20,6 +20,7 @@ void begin_fault(const std::string& fault, simulation::SimulatedRig& rig) {
     if (fault == "markers") rig.slip_marker(-1, {1.2, -1.2, 2.5});
     if (fault == "late") rig.delay_light(std::chrono::milliseconds(90));
     if (fault == "no-picture") rig.cover_projector(true);
+    if (fault == "frozen") rig.freeze_projector();
 }
 
 }  // namespace planlight

@@ -11,7 +11,7 @@ namespace planlight {
 const std::vector<std::string>& simulated_faults();
 
 /// Lets that fault begin now: a device turned by 0.08 degrees, one marker or all of them slipped, a late picture, a lid
-/// before the projector. Another word does nothing.
+/// before the projector, a projector that holds its picture. Another word does nothing.
 void begin_fault(const std::string& fault, simulation::SimulatedRig& rig);
 
 }  // namespace planlight

@@ -23,6 +23,7 @@ public:
     /// Each is computed, and nothing in it moves by itself.
     Instant look_interval() const override { return std::chrono::seconds(2); }
     void computing() override { rig_.wait(std::chrono::milliseconds(10)); }
+    void resting(Instant duration) override { rig_.wait(duration); }
     void let_patient_move(bool moves) override;
     void begin_fault() override;
     std::shared_ptr<const std::vector<LightLine>> true_light(const PlanDrawing& drawing,

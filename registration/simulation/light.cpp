@@ -121,7 +121,12 @@ std::shared_ptr<const LightMap> LightSchedule::during(Instant opened, Instant cl
         if (!none_) none_ = std::make_shared<LightMap>(LightMap(width_, height_, nullptr).times(0));
         return none_;
     }
+    if (frozen_) return frozen_;
     return settings_.over_exposure() ? sum_over(opened, closed) : at(needed);
+}
+
+void LightSchedule::freeze(Instant now) {
+    frozen_ = at(now);
 }
 
 std::shared_ptr<const LightMap> LightSchedule::at(Instant at) {

@@ -63,6 +63,8 @@ public:
     void show(const RgbImage& picture, Instant now, Instant valid_until);
     void go_dark(Instant now) noexcept;
     void set_untold_delay(Instant delay) { settings_.untold_delay = delay; }
+    /// From now on, whatever is ordered, the light is that of this moment: a panel that was frozen.
+    void freeze(Instant now);
     void cover(bool lens_is_covered) { covered_ = lens_is_covered; }  ///< no light at all, also no leak
 
     /// The light that an exposure gets: that of its middle, or of all of it where the settings say so; never null.
@@ -94,7 +96,7 @@ private:
     bool covered_ = false;
     std::deque<Order> orders_;
     std::vector<TrueLight> truth_;
-    std::shared_ptr<const LightMap> black_, full_, none_;
+    std::shared_ptr<const LightMap> black_, full_, none_, frozen_;
 };
 
 }  // namespace planlight::simulation

@@ -219,6 +219,9 @@ void SimulatedRig::wait(Instant duration) {
 void SimulatedRig::cover_projector(bool covered) {
     room_->schedule.cover(covered);
 }
+void SimulatedRig::freeze_projector() {
+    room_->schedule.freeze(room_->now_);
+}
 void SimulatedRig::set_motion(const Motion& motion) {
     room_->add_motion(motion);
 }

@@ -70,6 +70,9 @@ public:
     /// A lid before the projector's lens from now on, or taken away: not even the leak of a black picture comes out.
     void cover_projector(bool covered);
 
+    /// Somebody presses Freeze on its remote control: it shows the picture of now for ever, whatever it is told.
+    void freeze_projector();
+
     /// From now on the head moves so (its pose is continuous).
     void set_motion(const Motion& motion);
 

@@ -21,6 +21,7 @@ public:
     const Clock& clock() const override { return room_->clock(); }
     RoomKind kind() const override { return room_->kind(); }
     void computing() override { room_->computing(); }
+    void resting(Instant duration) override { room_->resting(duration); }
     void let_patient_move(bool moves) override { room_->let_patient_move(moves); }
     void begin_fault() override { room_->begin_fault(); }
 

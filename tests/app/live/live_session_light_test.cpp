@@ -225,6 +225,34 @@ protected:
     SlippingRoom* entered = nullptr;  ///< once the session is ready
 };
 
+// Somebody pressed Freeze on the projector's remote control: nothing that is ordered reaches the skin any more. The
+// patient moves meanwhile.
+class LiveSessionWithAFrozenProjector : public LiveSessionTest {
+protected:
+    std::unique_ptr<Room> made_room() override {
+        auto made = std::make_unique<SimulatedRoom>(test::example_case().volume, test::example_case().prepared.plan,
+                                                    room, 5, "frozen");
+        entered = made.get();
+        return made;
+    }
+    Room* entered = nullptr;  ///< once the session is ready
+};
+
+TEST_F(LiveSessionWithAFrozenProjector, DarkSaysThatTheLightDoesNotGoOut) {
+    followed();
+    hold();
+    entered->begin_fault();
+    held = false;
+    session->post(OperatorAction::dark);
+    EXPECT_EQ(session->model().status.kind, StatusKind::dark) << "at first nobody can know";
+    const OperatorModel lit =
+        wait_for(*session, "the light", [](const OperatorModel& m) { return m.status.kind == StatusKind::refused; });
+    EXPECT_TRUE(says(lit, "does not go out")) << lit.status.headline;
+    EXPECT_TRUE(says(lit, "cover the projector's lens")) << "what to do now stands there";
+    EXPECT_EQ(session->post(OperatorAction::track), "") << "the match is kept";
+    wait_for(*session, "light", [](const OperatorModel& m) { return !says(m, "does not go out"); });
+}
+
 // All markers slipped together: they agree with each other, and the light with them; only the skin tells. From then on
 // there is no light by that match, however often Track is pressed.
 TEST_F(LiveSessionWithSlippedMarkers, SkinThatLiesAsideForbidsLightUntilTheNextScan) {

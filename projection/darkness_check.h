@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+
+#include "planning_io/types/rig_calibration.h"
+#include "planning_io/types/stereo_frame.h"
+#include "projection/check_light.h"
+#include "projection/draw_plan.h"
+#include "projection/skin_surface.h"
+
+namespace planlight {
+
+struct DarknessSettings {
+    double least_seen_share = 0.5;  ///< of the stretches that the cameras should see if their light were there
+    int least_seen = 5;             ///< stretches
+    int lit_after = 2;              ///< looks running
+    double moved_mm = 0.3;          ///< where the plan's skin lies so far from where it was lit, light lies elsewhere
+};
+
+/// The drawing's light as it falls on a head that has moved since the projector's picture was drawn for
+/// `rig_from_ct_then`: each point followed from the projector to the skin where that is now. Without labels; a stroke
+/// of which a part meets no skin is in pieces.
+PlanDrawing light_on_moved_head(const PlanDrawing& drawing, const SkinSurface& skin, const CameraModel& projector,
+                                const RigidTransform& rig_from_ct_then, const RigidTransform& rig_from_ct_now);
+
+/// Whether light that was put out is still on the skin. A projector whose picture was frozen (by its remote control),
+/// or a video link that hangs, shows what it was sent last, whatever it is told.
+///
+/// Keeps a reference to the skin; copies the rest.
+class DarknessCheck {
+public:
+    /// What was lit last, and for a head that stood where. Of a plan with a bright item (`LightChecker`) that alone is
+    /// looked for.
+    DarknessCheck(PlanDrawing lit, const SkinSurface& skin, const RigCalibration& rig,
+                  const RigidTransform& rig_from_ct_when_lit, const CheckLightSettings& look = {},
+                  std::optional<std::size_t> bright_item = {}, const DarknessSettings& settings = {});
+
+    DarknessCheck(const DarknessCheck&) = delete;
+    DarknessCheck& operator=(const DarknessCheck&) = delete;
+
+    /// A frame all of whose exposure was to be dark, and where the head stands in it; empty: as it was lit. True: this
+    /// look and the one before saw the light.
+    bool look(const StereoFrame& frame, const std::optional<RigidTransform>& rig_from_ct = {});
+
+    /// By the last look.
+    bool lit() const { return seen_running_ >= settings_.lit_after; }
+
+private:
+    void stand_at(const RigidTransform& rig_from_ct);
+
+    PlanDrawing drawing_;
+    const SkinSurface& skin_;
+    RigCalibration rig_;
+    RigidTransform when_lit_, stands_at_;
+    CheckLightSettings look_;
+    std::optional<std::size_t> bright_item_;
+    DarknessSettings settings_;
+    std::optional<LightChecker> checker_;
+    int seen_running_ = 0;
+};
+
+}  // namespace planlight

@@ -1,0 +1,118 @@
+// Light that was put out and is still on the skin, because the projector holds its picture.
+#include <gtest/gtest.h>
+
+#include "app/session.h"
+#include "tests/app/played_session.h"
+
+namespace planlight {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A session in the simulated room whose plan is on the skin.
+class LastLight : public testing::TestWithParam<unsigned> {
+protected:
+    void SetUp() override {
+        if (!test::example_case().there) GTEST_SKIP() << "invesalius-examples is not installed";
+        settings.preset = simulation::Preset::paper;
+        settings.seed = GetParam();
+    }
+    void start() {
+        room.emplace(test::example_case().volume, std::vector<Eigen::Vector3d>{}, settings);
+        drawing.emplace(test::example_case().prepared);
+        session.emplace(test::example_case().prepared, *drawing, room->calibration(), room->projector(),
+                        room->cameras(), room->clock());
+        session->scan();
+        session->find_patient();
+        session->confirm();
+    }
+    void follow(int updates) {
+        for (int i = 0; i < updates; ++i) ASSERT_TRUE(session->update().overlay.lit);
+    }
+    /// Of the plan's first point.
+    double moved_mm(const RigidTransform& since) const {
+        const Eigen::Vector3d p = test::example_case().prepared.plan.osteotomy_lines.front().points_in_ct.front();
+        return (room->true_rig_from_ct(room->clock().now()) * p - since * p).norm();
+    }
+    /// Of frames a fifth of a second apart, in which nothing is followed.
+    int looks_that_see_it(int looks) {
+        int saw = 0;
+        for (int i = 0; i < looks; ++i) {
+            room->wait(200ms);
+            saw += session->light_stays(room->cameras().newest(room->clock().now(), 1s)) ? 1 : 0;
+        }
+        return saw;
+    }
+
+    simulation::RoomSettings settings;
+    std::optional<simulation::SimulatedRig> room;
+    std::optional<CaseDrawing> drawing;
+    std::optional<Session> session;
+};
+
+TEST_P(LastLight, IsSeenWhereTheProjectorHoldsItsPictureAndNowhereElse) {
+    start();
+    follow(8);
+    session->go_dark();
+    EXPECT_EQ(looks_that_see_it(30), 0) << "it went out";
+    follow(8);
+    room->freeze_projector();
+    session->go_dark();
+    EXPECT_GE(looks_that_see_it(6), 1) << "half a second until it should be dark, then two looks";
+    EXPECT_EQ(looks_that_see_it(6), 6);
+    room->cover_projector(true);
+    looks_that_see_it(2);
+    EXPECT_EQ(looks_that_see_it(4), 0) << "its lens was covered";
+}
+
+TEST_P(LastLight, IsSeenOnAHeadThatMovesAwayUnderIt) {
+    start();
+    follow(8);
+    room->freeze_projector();
+    session->go_dark();
+    const RigidTransform before = room->true_rig_from_ct(room->clock().now());
+    room->set_motion({15, room->clock().now()});
+    looks_that_see_it(6);
+    double most_mm = 0;
+    for (int i = 0; i < 8; ++i) {
+        EXPECT_EQ(looks_that_see_it(1), 1);
+        most_mm = std::max(most_mm, moved_mm(before));
+    }
+    EXPECT_GT(most_mm, 4) << "farther than strokes are looked for to their sides";
+}
+
+TEST_P(LastLight, IsToldByUpdatesThatAreDark) {
+    start();
+    follow(8);
+    room->freeze_projector();
+    std::vector<int> markers;
+    for (int i = 0; i < 8; ++i) markers.push_back(i);
+    room->cover_markers(markers);
+    int told = 0, dark = 0;
+    for (int i = 0; i < 60; ++i) {
+        const Session::Update update = session->update();
+        dark += update.overlay.lit ? 0 : 1;
+        told += update.light_stays ? 1 : 0;
+    }
+    EXPECT_GT(dark, 55);
+    EXPECT_GT(told, 20) << "of 2.4 seconds, at rest";
+    room->cover_markers({});
+    EXPECT_TRUE(session->update().overlay.lit);
+}
+
+/// What shines, hangs over the skin or has lines of its own is not taken for light that stays.
+TEST_P(LastLight, GoesOutInStrangeRoomsToo) {
+    settings.wet = 0.7;
+    settings.ambient = 0.35;
+    settings.things.hair = settings.things.drape_behind = true;
+    start();
+    follow(8);
+    session->go_dark();
+    room->set_motion({15, room->clock().now()});
+    EXPECT_EQ(looks_that_see_it(16), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rooms, LastLight, testing::Values(2));
+
+}  // namespace
+}  // namespace planlight
