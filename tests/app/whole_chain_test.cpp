@@ -90,6 +90,15 @@ TEST_F(WholeChain, APatientWhoMovesDuringTheScanIsScannedAgain) {
     EXPECT_THROW(hurried.scan(), CheckFailedError);
 }
 
+/// In this room the cheek turns away from the light along a column of the projector's picture, as that picture's end
+/// would look.
+TEST_F(WholeChain, WhereTheHeadTurnsAwayFromTheLightTheProjectorsPictureDoesNotEnd) {
+    simulation::SimulatedRig room(*volume_, points_of(prepared_.plan), papers_room(529));
+    const CaseDrawing drawing(prepared_);
+    Session session(prepared_, drawing, room.calibration(), room.projector(), room.cameras(), room.clock());
+    EXPECT_NO_THROW(session.scan());
+}
+
 TEST_F(WholeChain, ADoubtfulMatchIsDrawnOnThePersonsWordAndTheWordHoldsForThatMatchOnly) {
     simulation::SimulatedRig room(*volume_, {}, papers_room(1));
     const CaseDrawing drawing(prepared_);

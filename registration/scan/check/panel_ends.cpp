@@ -16,7 +16,8 @@ namespace {
 struct End {
     double code = 0;
     int x = 0, y = 0;
-    bool lit = false;  ///< the one beside it has light; else the room lights it alone
+    bool lit = false;       ///< the one beside it has light; else the room lights it alone
+    double light_grey = 0;  ///< of the projector, on the decoded one
 };
 
 std::vector<End> ends_of(const DecodedView& view, const LargeArray<float>& code, const GrayImage& white,
@@ -34,30 +35,45 @@ std::vector<End> ends_of(const DecodedView& view, const LargeArray<float>& code,
                 if (!std::isnan(code[k])) continue;
                 const double here = white.pixels[i] - black.pixels[i], there = white.pixels[k] - black.pixels[k];
                 if (there >= kLit * here)
-                    ends.push_back({code[i], x, y, true});
+                    ends.push_back({code[i], x, y, true, here});
                 else if (there <= kUnlit * here && black.pixels[i] >= kLeastRoom_grey &&
                          black.pixels[k] >= kRoomAlike * black.pixels[i])
-                    ends.push_back({code[i], x, y, false});
+                    ends.push_back({code[i], x, y, false, here});
             }
         }
     return ends;
 }
 
-/// Ends between two codes, lit or not, and whether they reach along a good part of the camera's picture.
+/// Ends between two codes, lit or not.
 struct Edge {
-    std::size_t count = 0;
-    bool is_long = false;
+    std::vector<double> x, y, light_grey;
+    double count() const { return static_cast<double>(x.size()); }
+    /// Enough of them, along a good part of the camera's picture.
+    bool is_long(const DecodedView& view) const {
+        constexpr double kFew = 60, kLong = 0.05;
+        const auto reach = [](const std::vector<double>& v) { return quantile(v, 0.95) - quantile(v, 0.05); };
+        return count() >= kFew && std::hypot(reach(x), reach(y)) > kLong * std::max(view.width, view.height);
+    }
 };
 
-Edge edge_between(const std::vector<End>& ends, double from, double to, bool lit, const DecodedView& view) {
-    constexpr std::size_t kFew = 60;
-    constexpr double kLong = 0.05;
-    std::vector<double> x, y;
+Edge edge_between(const std::vector<End>& ends, double from, double to, bool lit) {
+    Edge edge;
     for (const End& end : ends)
-        if (end.lit == lit && end.code >= from && end.code <= to) x.push_back(end.x), y.push_back(end.y);
-    if (x.size() < kFew) return {x.size(), false};
-    const auto reach = [](std::vector<double> values) { return quantile(values, 0.95) - quantile(values, 0.05); };
-    return {x.size(), std::hypot(reach(x), reach(y)) > kLong * std::max(view.width, view.height)};
+        if (end.lit == lit && end.code >= from && end.code <= to)
+            edge.x.push_back(end.x), edge.y.push_back(end.y), edge.light_grey.push_back(end.light_grey);
+    return edge;
+}
+
+/// Whether the light at an edge is about as bright as just inside of it: that of a picture's end is. A head turns away
+/// from the light, and what lies farthest out on it is dim.
+bool is_bright(const Edge& edge, const LargeArray<float>& code, const GrayImage& white, const GrayImage& black,
+               double last) {
+    constexpr double kFrom_px = 40, kTo_px = 10, kAsBright = 0.7;
+    std::vector<double> inside_grey;
+    for (std::size_t i = 0; i < code.size(); ++i)
+        if (code[i] >= last - kFrom_px && code[i] <= last - kTo_px)
+            inside_grey.push_back(white.pixels[i] - black.pixels[i]);
+    return !inside_grey.empty() && quantile(edge.light_grey, 0.5) >= kAsBright * quantile(inside_grey, 0.5);
 }
 
 /// One in a thousand decoded pixels has a higher code; 0 where few are decoded.
@@ -86,22 +102,21 @@ std::optional<SequenceProblem> problem_of(const DecodedView& view, const LargeAr
     if (!early && last < size - kNear_px - 1) return std::nullopt;
     const std::vector<End> ends = ends_of(view, code, white, black);
     if (!early) {
-        const Edge lit = edge_between(ends, size - 1 - kNear_px, size, true, view);
-        const Edge dark = edge_between(ends, size - 1 - kNear_px, size, false, view);
-        if (!lit.is_long || lit.count < 3 * dark.count) return std::nullopt;
+        const Edge lit = edge_between(ends, size - 1 - kNear_px, size, true);
+        const Edge dark = edge_between(ends, size - 1 - kNear_px, size, false);
+        if (!lit.is_long(view) || lit.count() < 3 * dark.count()) return std::nullopt;
         return SequenceProblem{0, fmt::format("light is seen beyond the code's last {} ({})", what, size),
-                               static_cast<double>(lit.count) / static_cast<double>(ends.size()),
-                               SequenceProblem::Cause::fringes};
+                               lit.count() / static_cast<double>(ends.size()), SequenceProblem::Cause::fringes};
     }
-    const Edge near = edge_between(ends, last - kNear_px, last + kNear_px, false, view);
-    const Edge zone = edge_between(ends, last - kZone_px, last + kZone_px, false, view);
-    if (!near.is_long || static_cast<double>(near.count) < kStraight * static_cast<double>(zone.count))
+    const Edge near = edge_between(ends, last - kNear_px, last + kNear_px, false);
+    const Edge zone = edge_between(ends, last - kZone_px, last + kZone_px, false);
+    if (!near.is_long(view) || near.count() < kStraight * zone.count() || !is_bright(near, code, white, black, last))
         return std::nullopt;
     return SequenceProblem{
         0,
         fmt::format("the light ends in a straight edge at {} {:.0f} by the code, and the picture has {}", what, last,
                     size),
-        static_cast<double>(near.count) / static_cast<double>(ends.size()), SequenceProblem::Cause::fringes};
+        near.count() / static_cast<double>(ends.size()), SequenceProblem::Cause::fringes};
 }
 
 }  // namespace
