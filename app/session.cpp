@@ -133,8 +133,21 @@ void Session::make_scan(const std::function<void(int, int)>& progress) {
                                  std::any_of(exposures.begin() + 1, exposures.end(), moved_in)))
         exposures.resize(1);
     scanned_ = scan_from_exposures(exposures, calibrated_, settings_.scan);
+    if (scanned_->clean.kept.empty()) refuse_scan_without_skin();
     capture_ = std::move(exposures.front());
     take_rig(*capture_);
+}
+
+void Session::refuse_scan_without_skin() {
+    const DecodedView& left = scanned_->left;
+    const bool saturated = left.saturated > left.decoded + left.uncertain;
+    scanned_.reset();
+    if (saturated)
+        throw CheckFailedError("the cameras' pictures are too bright for the stripes to be read",
+                               "Shorten the cameras' exposure, or turn lamps and projector down, and scan again.");
+    throw CheckFailedError("the cameras see none of the stripes on the skin",
+                           "See that the projector is on and lights the patient, that its lens is free, and that its "
+                           "picture is not frozen (Freeze on its remote control); then scan again.");
 }
 
 void Session::use_rig(const RigCalibration& rig) {

@@ -217,6 +217,7 @@ private:
                                 ResumeCheck& check);
     void compare_skin_again(const KeptMatch& match, const RigidTransform& rig_from_patient, ResumeCheck& check) const;
     void darken() noexcept;
+    [[noreturn]] void refuse_scan_without_skin();
     void use_rig(const RigCalibration& rig);
     StereoFrame next_frame();
     void name_lost_pose(Update& update);

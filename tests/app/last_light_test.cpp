@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "app/session.h"
+#include "planning_io/types/error.h"
 #include "tests/app/played_session.h"
 
 namespace planlight {
@@ -98,6 +99,21 @@ TEST_P(LastLight, IsToldByUpdatesThatAreDark) {
     EXPECT_GT(told, 20) << "of 2.4 seconds, at rest";
     room->cover_markers({});
     EXPECT_TRUE(session->update().overlay.lit);
+}
+
+/// A scan shows what is to be done about it.
+TEST_P(LastLight, OfAFrozenProjectorScansNothing) {
+    start();
+    follow(2);
+    room->freeze_projector();
+    try {
+        session->scan();
+        ADD_FAILURE() << "its stripes were never lit";
+    } catch (const CheckFailedError& refusal) {
+        EXPECT_EQ(refusal.what(), std::string("the cameras see none of the stripes on the skin"));
+        EXPECT_NE(refusal.remedy.find("not frozen"), std::string::npos) << refusal.remedy;
+    }
+    EXPECT_EQ(session->scanned(), nullptr);
 }
 
 /// What shines, hangs over the skin or has lines of its own is not taken for light that stays.
