@@ -259,6 +259,7 @@ void Session::start_overlay() {
     const bool others_lit = !lit_landmark_ && settings_.overlay.render.others > 0;
     looked_for_ = std::make_shared<const PlanDrawing>(bright_item_ ? lit_with(lit_drawing(), *bright_item_, others_lit)
                                                                    : lit_drawing());
+    lit_grey_ = 0;
     checker_.emplace(*looked_for_, skin_of_light(), rig_, settings_.check_light, bright_item_);
     tracker_.set_places(places_of_light(lit_drawing(), registration_->patient_from_ct));
     watch_.emplace(rig_, settings_.light_cause);

@@ -268,8 +268,10 @@ private:
         RigidTransform rig_from_ct;
         std::shared_ptr<const PlanDrawing> drawing;
         std::optional<std::size_t> bright_item;
+        double grey = 0;  ///< `light_grey`; 0: it was not looked at
     };
     std::optional<LastLight> last_light_;  ///< on the skin of now; empty: none, or stripes since
+    double lit_grey_ = 0;                  ///< of what the overlay lights, as it was seen last
     std::unique_ptr<DarknessCheck> darkness_;
     Instant darkness_looked_at_{};
     std::vector<ShownPicture> shown_;

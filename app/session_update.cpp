@@ -35,7 +35,10 @@ Session::Update Session::make_update() {
     if (!update.overlay.lit && !update.camera_doubt.empty()) update.overlay.reason += "; " + update.camera_doubt;
     const auto checking_began = std::chrono::steady_clock::now();
     update.light = look_at_light(update);
-    if (update.light) overlay_->set_brightness(brightness_.look(*update.light));
+    if (update.light) {
+        overlay_->set_brightness(brightness_.look(*update.light));
+        if (update.light->seen > 0) lit_grey_ = light_grey(*update.light);
+    }
     watch_light(update);
     update.times.check_s = elapsed_s(checking_began);
     note_shown(update.overlay);
@@ -89,7 +92,7 @@ void Session::note_shown(const OverlayStep& overlay) {
     }
     if (lit_since_ == Instant::max()) lit_since_ = overlay.lit_from + found_delay_;
     darkness_.reset();
-    last_light_ = {overlay.lit_from + found_delay_, overlay.rig_from_ct, looked_for_, bright_item_};
+    last_light_ = {overlay.lit_from + found_delay_, overlay.rig_from_ct, looked_for_, bright_item_, lit_grey_};
     counts_shown_ = overlay.counts;
     shown_.push_back({overlay.lit_from + found_delay_, overlay.rig_from_ct});
     if (shown_.size() > kKept) shown_.erase(shown_.begin());
@@ -154,7 +157,7 @@ bool Session::sees_last_light(const StereoFrame& frame,
     if (!darkness_)
         darkness_ =
             std::make_unique<DarknessCheck>(*last_light_->drawing, skin_of_light(), rig_, last_light_->rig_from_ct,
-                                            settings_.check_light, last_light_->bright_item);
+                                            last_light_->grey, settings_.check_light, last_light_->bright_item);
     else if (frame.at < darkness_looked_at_ + kEvery)
         return darkness_->lit();
     darkness_looked_at_ = frame.at;

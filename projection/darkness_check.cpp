@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
+
+#include "planning_io/types/statistics.h"
 
 namespace planlight {
 namespace {
@@ -22,6 +25,13 @@ Stroke without_points(const Stroke& stroke) {
 }
 
 }  // namespace
+
+double light_grey(const LightCheck& check) {
+    std::vector<double> grey;
+    for (const SeenSegment& segment : check.segments)
+        if (segment.seen) grey.push_back(segment.brighter * segment.background);
+    return grey.empty() ? 0 : quantile(grey, 0.5);
+}
 
 PlanDrawing light_on_moved_head(const PlanDrawing& drawing, const SkinSurface& skin, const CameraModel& projector,
                                 const RigidTransform& rig_from_ct_then, const RigidTransform& rig_from_ct_now) {
@@ -54,13 +64,15 @@ PlanDrawing light_on_moved_head(const PlanDrawing& drawing, const SkinSurface& s
 }
 
 DarknessCheck::DarknessCheck(PlanDrawing lit, const SkinSurface& skin, const RigCalibration& rig,
-                             const RigidTransform& rig_from_ct_when_lit, const CheckLightSettings& look,
-                             std::optional<std::size_t> bright_item, const DarknessSettings& settings)
+                             const RigidTransform& rig_from_ct_when_lit, double grey_when_lit,
+                             const CheckLightSettings& look, std::optional<std::size_t> bright_item,
+                             const DarknessSettings& settings)
     : drawing_(std::move(lit)),
       skin_(skin),
       rig_(rig),
       when_lit_(rig_from_ct_when_lit),
       stands_at_(rig_from_ct_when_lit),
+      grey_when_lit_(grey_when_lit),
       look_(look),
       bright_item_(bright_item),
       settings_(settings) {
@@ -78,7 +90,8 @@ void DarknessCheck::stand_at(const RigidTransform& rig_from_ct) {
 bool DarknessCheck::look(const StereoFrame& frame, const std::optional<RigidTransform>& rig_from_ct) {
     stand_at(rig_from_ct.value_or(when_lit_));
     const LightCheck check = checker_->look(stands_at_, frame);
-    const bool seen = check.seen >= settings_.least_seen && check.seen_share() >= settings_.least_seen_share;
+    const bool seen = check.seen >= settings_.least_seen && check.seen_share() >= settings_.least_seen_share &&
+                      light_grey(check) >= settings_.least_of_light * grey_when_lit_;
     seen_running_ = seen ? seen_running_ + 1 : 0;
     return lit();
 }

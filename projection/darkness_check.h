@@ -14,8 +14,12 @@ struct DarknessSettings {
     double least_seen_share = 0.5;  ///< of the stretches that the cameras should see if their light were there
     int least_seen = 5;             ///< stretches
     int lit_after = 2;              ///< looks running
+    double least_of_light = 0.6;    ///< of the grey that the light had; less is ink along the lines, a scar, a thread
     double moved_mm = 0.3;          ///< where the plan's skin lies so far from where it was lit, light lies elsewhere
 };
+
+/// How much brighter than the skin beside them the stretches are that were seen, grey levels, median; 0: none was.
+double light_grey(const LightCheck& check);
 
 /// The drawing's light as it falls on a head that has moved since the projector's picture was drawn for
 /// `rig_from_ct_then`: each point followed from the projector to the skin where that is now. Without labels; a stroke
@@ -29,10 +33,10 @@ PlanDrawing light_on_moved_head(const PlanDrawing& drawing, const SkinSurface& s
 /// Keeps a reference to the skin; copies the rest.
 class DarknessCheck {
 public:
-    /// What was lit last, and for a head that stood where. Of a plan with a bright item (`LightChecker`) that alone is
-    /// looked for.
+    /// What was lit last, for a head that stood where, and its `light_grey` then (0: not known). Of a plan with a
+    /// bright item (`LightChecker`) that alone is looked for.
     DarknessCheck(PlanDrawing lit, const SkinSurface& skin, const RigCalibration& rig,
-                  const RigidTransform& rig_from_ct_when_lit, const CheckLightSettings& look = {},
+                  const RigidTransform& rig_from_ct_when_lit, double grey_when_lit, const CheckLightSettings& look = {},
                   std::optional<std::size_t> bright_item = {}, const DarknessSettings& settings = {});
 
     DarknessCheck(const DarknessCheck&) = delete;
@@ -52,6 +56,7 @@ private:
     const SkinSurface& skin_;
     RigCalibration rig_;
     RigidTransform when_lit_, stands_at_;
+    double grey_when_lit_;
     CheckLightSettings look_;
     std::optional<std::size_t> bright_item_;
     DarknessSettings settings_;

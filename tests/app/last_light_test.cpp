@@ -82,6 +82,27 @@ TEST_P(LastLight, IsSeenOnAHeadThatMovesAwayUnderIt) {
     EXPECT_GT(most_mm, 4) << "farther than strokes are looked for to their sides";
 }
 
+/// Somebody drew over the lines in white: half as bright as the light, and there when it has gone.
+TEST_P(LastLight, IsBrighterThanInkAlongItsLines) {
+    start();
+    Session::Update lit;
+    for (int i = 0; i < 12; ++i) {
+        const Session::Update update = session->update();
+        if (update.light) lit = update;
+    }
+    ASSERT_TRUE(lit.light);
+    const double seen_grey = light_grey(*lit.light);
+    const RigidTransform rig_from_ct = *lit.pose.rig_from_patient * session->registration()->patient_from_ct;
+    const auto looks_lit = [&](double grey_when_lit) {
+        DarknessCheck check(session->lit_drawing(), drawing->skin, session->rig(), rig_from_ct, grey_when_lit);
+        check.look(lit.frame);
+        return check.look(lit.frame);
+    };
+    EXPECT_TRUE(looks_lit(seen_grey));
+    EXPECT_TRUE(looks_lit(0)) << "nobody looked at it while it was lit";
+    EXPECT_FALSE(looks_lit(2 * seen_grey));
+}
+
 TEST_P(LastLight, IsToldByUpdatesThatAreDark) {
     start();
     follow(8);

