@@ -197,15 +197,15 @@ void ProjectorProcess::throw_ended(const std::string& problem) {
                       "The light is dark. It can be started again; if this comes back, restart the computer.");
 }
 
-bool ProjectorProcess::shown_in_time(std::uint64_t number) {
+void ProjectorProcess::wait_until_done(std::uint64_t number, const std::function<void()>& meanwhile) {
     while (mailbox_.done() < number) {
         check_locked();
+        meanwhile();
         std::this_thread::sleep_for(kPoll);
     }
-    return true;
 }
 
-Instant ProjectorProcess::show(const RgbImage& picture, Instant valid_until) {
+Instant ProjectorProcess::show(const RgbImage& picture, Instant valid_until, const std::function<bool()>& permitted) {
     const std::lock_guard lock(mutex_);
     check_locked();
     if (picture.width != width_ || picture.height != height_) {
@@ -218,7 +218,9 @@ Instant ProjectorProcess::show(const RgbImage& picture, Instant valid_until) {
     }
     const std::uint64_t number = mailbox_.order(picture, valid_until);
     wake();
-    shown_in_time(number);
+    wait_until_done(number, [&] {
+        if (!permitted || permitted()) renew();
+    });
     return mailbox_.done_at() + settings_.light_delay;
 }
 
@@ -229,7 +231,7 @@ void ProjectorProcess::go_dark() noexcept {
     const std::uint64_t number = mailbox_.order({}, {});
     wake();
     try {
-        shown_in_time(number);
+        wait_until_done(number, [] {});
     } catch (const std::exception&) {
         // The process is ended then, and dark; the next `check` says where it is not.
     }

@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <string>
 
@@ -54,8 +55,10 @@ public:
     const std::string& monitor() const { return monitor_; }
 
     /// Returns when the picture is on the display. Throws DeviceError, with the process ended and so dark, when it does
-    /// not come there, the monitor is gone or the window does not cover it.
-    Instant show(const RgbImage& picture, Instant valid_until) override;
+    /// not come there, the monitor is gone or the window does not cover it. A window's first picture may take longer
+    /// than a lease: it is renewed while this waits, as long as `permitted` says so (empty: always).
+    Instant show(const RgbImage& picture, Instant valid_until, const std::function<bool()>& permitted);
+    Instant show(const RgbImage& picture, Instant valid_until) override { return show(picture, valid_until, {}); }
     void go_dark() noexcept override;
 
     /// Keeps the light for another lease. To be called while everything that the light depends on is alive.
@@ -74,7 +77,7 @@ private:
     void wait_until_ready();
     [[noreturn]] void fail(const std::string& problem, const std::string& remedy);
     void check_locked();
-    bool shown_in_time(std::uint64_t number);
+    void wait_until_done(std::uint64_t number, const std::function<void()>& meanwhile);
     void wake();
     bool end() noexcept;  ///< false: killed, and not gone yet; its window may stay
     [[noreturn]] void throw_ended(const std::string& problem);

@@ -53,7 +53,7 @@ Instant ProjectorKeeper::show(const RgbImage& picture, Instant valid_until) {
         }
         dark_watch_.expect_dark_from(valid_until);
         projector_->renew();  // a picture that comes before the lease, or right after darkness, would be lost
-        return projector_->show(picture, valid_until);
+        return projector_->show(picture, valid_until, permitted_);
     } catch (const Error& error) {
         lock.unlock();
         lose(problem_of(error));

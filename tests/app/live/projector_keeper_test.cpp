@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "planning_io/types/error.h"
@@ -24,6 +25,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr const char* kNotesAt = "PLANLIGHT_TEST_NOTES";
+constexpr const char* kDrawsFor_ms = "PLANLIGHT_TEST_DRAWS_FOR_MS";  ///< each picture; none where it is not set
 
 std::vector<std::string> own_arguments() {
     std::ifstream file("/proc/self/cmdline");
@@ -43,6 +45,8 @@ std::vector<std::string> own_arguments() {
     for (char byte = 0;;) {
         mailbox.say_alive(SteadyClock().now());
         if (mailbox.take(order)) {
+            if (const char* const draws = std::getenv(kDrawsFor_ms); draws && !order.picture.empty())
+                std::this_thread::sleep_for(std::chrono::milliseconds(std::atoi(draws)));
             const bool lit = !order.picture.empty() && SteadyClock().now() < mailbox.lease_until();
             notes << (lit ? "lit" : "dark") << std::endl;
             mailbox.say_done(order.number, SteadyClock().now());
@@ -67,6 +71,7 @@ protected:
     void SetUp() override {
         ASSERT_TRUE(kNoProjector);
         setenv(kNotesAt, (folder_.path() / "notes").c_str(), 1);
+        unsetenv(kDrawsFor_ms);
         settings_.retry_after = 1ms;
         settings_.window_patience = settings_.session_patience = 1h;
         settings_.process.silence_allowed = settings_.process.work_allowed = 1min;  // a busy machine is no fault here
@@ -162,6 +167,27 @@ TEST_F(ProjectorKeeperTest, WhoShowsIsAlive) {
     ProjectorKeeper projector("DUMMY1", settings_);
     EXPECT_NO_THROW(projector.show(RgbImage(8, 6, {255, 255, 255}), in_a_minute()));
     EXPECT_EQ(noted("lit").size(), 1U);
+}
+
+// A window's first picture, on a desktop that is just busy, takes longer than the lease; its light stays nevertheless.
+TEST_F(ProjectorKeeperTest, APictureThatTakesLongerThanTheLeaseToDrawIsLit) {
+    setenv(kDrawsFor_ms, "1500", 1);
+    settings_.process.lease = 1s;
+    ProjectorKeeper projector("DUMMY1", settings_);
+    projector.show(RgbImage(8, 6, {255, 255, 255}), in_a_minute());
+    EXPECT_EQ(noted("lit").size(), 1U);
+}
+
+// ... but where DARK was pressed meanwhile, the lease ends.
+TEST_F(ProjectorKeeperTest, APictureThatTakesLongIsNotKeptLitAfterDark) {
+    setenv(kDrawsFor_ms, "600", 1);
+    settings_.process.lease = 200ms;
+    ProjectorKeeper projector("DUMMY1", settings_);
+    std::atomic<int> asked{0};
+    projector.set_permission([&] { return ++asked == 1; });  // as it is handed over, and never again
+    projector.show(RgbImage(8, 6, {255, 255, 255}), in_a_minute());
+    EXPECT_TRUE(noted("lit").empty());
+    EXPECT_GT(asked, 1);
 }
 
 // It had passed every check of its session before DARK was pressed, and was only then handed over.
