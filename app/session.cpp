@@ -217,7 +217,6 @@ void Session::match(const std::vector<PointPair>& landmarks) {
     settings.viewpoint_in_rig = rig_.projector.centre_in_rig();
     confirmed_ = false;
     overlay_.reset();
-    forget_last_light();
     landmarks_.reset();
     rig_from_patient_ = RigidTransform::Identity();
     lit_landmark_.reset();
@@ -237,6 +236,7 @@ void Session::draw_on_skin_as_found() {
     const RigidTransform ct_from_patient = registration_->patient_from_ct.inverse();
     for (const auto& marker : tracker_.markers())
         drawing.keep_clear_in_ct.push_back(ct_from_patient * marker.centre_in_patient);
+    darkness_.reset();  // its skin goes; what was lit last may still be
     now_.emplace(case_, planned_, registration_->skin, drawing);
     set_hidden(hidden_);  // of this drawing
     renderer_ = std::make_unique<DrawingRenderer>(now_->skin, rig_.projector);

@@ -266,11 +266,12 @@ private:
     struct LastLight {
         Instant lit_from{};
         RigidTransform rig_from_ct;
+        RigidTransform patient_from_ct;  ///< of the match that it was lit by
         std::shared_ptr<const PlanDrawing> drawing;
         std::optional<std::size_t> bright_item;
         double grey = 0;  ///< `light_grey`; 0: it was not looked at
     };
-    std::optional<LastLight> last_light_;  ///< on the skin of now; empty: none, or stripes since
+    std::optional<LastLight> last_light_;  ///< also through another match; empty: none, or stripes since
     double lit_grey_ = 0;                  ///< of what the overlay lights, as it was seen last
     std::unique_ptr<DarknessCheck> darkness_;
     Instant darkness_looked_at_{};

@@ -92,7 +92,12 @@ void Session::note_shown(const OverlayStep& overlay) {
     }
     if (lit_since_ == Instant::max()) lit_since_ = overlay.lit_from + found_delay_;
     darkness_.reset();
-    last_light_ = {overlay.lit_from + found_delay_, overlay.rig_from_ct, looked_for_, bright_item_, lit_grey_};
+    last_light_ = {overlay.lit_from + found_delay_,
+                   overlay.rig_from_ct,
+                   registration_->patient_from_ct,
+                   looked_for_,
+                   bright_item_,
+                   lit_grey_};
     counts_shown_ = overlay.counts;
     shown_.push_back({overlay.lit_from + found_delay_, overlay.rig_from_ct});
     if (shown_.size() > kKept) shown_.erase(shown_.begin());
@@ -152,7 +157,7 @@ bool Session::light_stays(const StereoFrame& frame) {
 bool Session::sees_last_light(const StereoFrame& frame,
                               const std::function<std::optional<RigidTransform>()>& find_patient) {
     constexpr Instant kEvery = std::chrono::milliseconds(250);
-    if (!last_light_ || !registration_) return false;
+    if (!last_light_) return false;
     if (frame.at - frame.exposure / 2 < last_light_->lit_from + settings_.time_to_dark) return false;
     if (!darkness_)
         darkness_ =
@@ -162,9 +167,9 @@ bool Session::sees_last_light(const StereoFrame& frame,
         return darkness_->lit();
     darkness_looked_at_ = frame.at;
     const auto rig_from_patient = find_patient();
-    return darkness_->look(
-        frame, rig_from_patient ? std::optional<RigidTransform>(*rig_from_patient * registration_->patient_from_ct)
-                                : std::nullopt);
+    return darkness_->look(frame, rig_from_patient
+                                      ? std::optional<RigidTransform>(*rig_from_patient * last_light_->patient_from_ct)
+                                      : std::nullopt);
 }
 
 /// CHECK: the frame was exposed under the light of the updates before; was there light for all of the exposure?

@@ -82,6 +82,22 @@ TEST_P(LastLight, IsSeenOnAHeadThatMovesAwayUnderIt) {
     EXPECT_GT(most_mm, 4) << "farther than strokes are looked for to their sides";
 }
 
+/// Register, pressed once more on the same scan, changes nothing of what the projector holds.
+TEST_P(LastLight, IsSeenThroughAnotherMatch) {
+    start();
+    follow(8);
+    session->go_dark();
+    session->find_patient();
+    EXPECT_EQ(looks_that_see_it(12), 0) << "it went out";
+    session->confirm();
+    follow(8);
+    room->freeze_projector();
+    session->go_dark();
+    session->find_patient();
+    looks_that_see_it(6);
+    EXPECT_EQ(looks_that_see_it(6), 6);
+}
+
 /// Somebody drew over the lines in white: half as bright as the light, and there when it has gone.
 TEST_P(LastLight, IsBrighterThanInkAlongItsLines) {
     start();
