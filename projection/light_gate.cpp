@@ -95,6 +95,28 @@ bool LightGate::Item::told_whole() const {
     return std::ranges::any_of(looks, &Look::told_whole);
 }
 
+/// With hysteresis, lest the banner flicker where the share lies at the limit.
+double LightGate::limit_for(const Item& item, double share) const {
+    return share * (item.fell_short ? 1 + settings_.hysteresis : 1 - settings_.hysteresis);
+}
+
+bool LightGate::measured(const Item& item) const {
+    const Item::Look all = item.all();
+    return all.seen > 0 && all.seen >= limit_for(item, settings_.least_seen_of_item) * all.asked;
+}
+
+LightGate::Shortfall LightGate::shortfall_of(const Item& item) const {
+    if (!measured(item)) return Shortfall::not_measured;
+    if (item.dim) return Shortfall::none;
+    const Item::Look all = item.all();
+    const bool stands_for_all = item.extent_mm <= settings_.small_item_mm && item.told_whole();
+    const double least_asked = stands_for_all ? settings_.least_seen_of_item : settings_.least_asked_of_item;
+    if (all.asked < limit_for(item, least_asked) * all.lit) return Shortfall::visible_in_part;
+    if (!stands_for_all && all.seen < limit_for(item, settings_.least_seen_of_asked) * all.asked)
+        return Shortfall::found_in_part;
+    return Shortfall::none;
+}
+
 /// A look at which it was not an item's turn tells nothing of it; one that saw little of it, nothing of its place.
 void LightGate::take(Instant at, const ItemLight& seen, Item& item) const {
     item.name = seen.name;
@@ -108,12 +130,13 @@ void LightGate::take(Instant at, const ItemLight& seen, Item& item) const {
     if (seen.dim && !seen.told()) return;
     item.looks.push_back({at, seen.lit_segments, seen.steep_segments, seen.segments, seen.seen, seen.part_off_mm,
                           seen.by_untold_height_mm, seen.known() && !seen.one_direction_only});
+    item.fell_short = shortfall_of(item) != Shortfall::none;
     if (seen.segments == 0) return;
     if (seen.seen >= settings_.least_seen_of_item * seen.segments) {
         item.off_mm = seen.off_mm;
         item.depth_mm = seen.depth_mm;
         item.good = item.off_mm <= settings_.warn_mm ? item.good + 1 : 0;
-    } else if (const Item::Look all = item.all(); all.seen < settings_.least_seen_of_item * all.asked) {
+    } else if (!measured(item)) {
         item.good = 0;
     }
 }
@@ -172,7 +195,8 @@ bool LightGate::faint(Instant at) const {
 bool LightGate::rule_on_item(const Item& item, Ruling& ruling) const {
     const Item::Look all = item.all();
     if (item.dim && all.asked == 0) return false;
-    if (all.asked == 0 || all.seen < settings_.least_seen_of_item * all.asked) {
+    const Shortfall shortfall = shortfall_of(item);
+    if (shortfall == Shortfall::not_measured) {
         ruling.found_wrong = false;
         ruling.headline = fmt::format("LOOK: \"{}\" is not measured.", item.name);
         ruling.details = {
@@ -196,16 +220,14 @@ bool LightGate::rule_on_item(const Item& item, Ruling& ruling) const {
         ruling.details = {"Look at it on the skin; if it stays so, scan again."};
         return true;
     }
-    const bool stands_for_all = item.extent_mm <= settings_.small_item_mm && item.told_whole();
-    const double least_asked = stands_for_all ? settings_.least_seen_of_item : settings_.least_asked_of_item;
-    if (!item.dim && all.asked < least_asked * all.lit) {
+    if (shortfall == Shortfall::visible_in_part) {
         ruling.found_wrong = false;
         ruling.headline = fmt::format("LOOK: \"{}\" is measured in part only.", item.name);
         ruling.details = {fmt::format("The cameras can see about {:.0f} % of its light: look at the rest yourself.",
                                       10 * std::round(10. * all.asked / all.lit))};
         return true;
     }
-    if (!item.dim && !stands_for_all && all.seen < settings_.least_seen_of_asked * all.asked) {
+    if (shortfall == Shortfall::found_in_part) {
         ruling.found_wrong = false;
         ruling.headline = fmt::format("LOOK: \"{}\" is measured in part only.", item.name);
         ruling.details = {fmt::format("About {:.0f} % of its light are not found in their place: look there yourself.",
@@ -254,9 +276,7 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
     const Item* aside = nullptr;
     bool another_right = false;
     for (const Item& item : items_) {
-        const Item::Look all = item.all();
-        if (!within_fresh(item.lit_at, at) || all.seen == 0 || all.seen < settings_.least_seen_of_item * all.asked)
-            continue;
+        if (!within_fresh(item.lit_at, at) || !measured(item)) continue;
         if (item.off_mm <= settings_.warn_mm)
             another_right = true;
         else if (!aside || item.off_mm > aside->off_mm)

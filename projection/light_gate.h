@@ -17,6 +17,7 @@ struct LightGateSettings {
     double least_seen_of_item = 0.3;   ///< of the stretches of each item, over the looks of the last `fresh`
     double least_asked_of_item = 0.5;  ///< of the stretches of each item that are lit: else it is measured in part only
     double least_seen_of_asked = 0.5;  ///< and of those that the cameras should see
+    double hysteresis = 0.1;    ///< of these three: so much more of an item must be seen where it was too little before
     double small_item_mm = 30;  ///< of an item no larger than this what is seen, in two directions, stands for the rest
     int least_seen = 5;         ///< stretches: fewer are no measurement
     int green_after = 3;        ///< good measurements in a row, of all the light and of each item
@@ -93,8 +94,9 @@ private:
         double extent_mm = std::numeric_limits<double>::infinity();  ///< `ItemLight::extent_mm`
         Instant lit_at = Instant::min();
         std::vector<Look> looks;
-        int good = 0;       ///< looks in a row that found it in its place
-        double off_mm = 0;  ///< by the last look that saw enough of it
+        bool fell_short = true;  ///< too little of it was seen when it was last judged
+        int good = 0;            ///< looks in a row that found it in its place
+        double off_mm = 0;       ///< by the last look that saw enough of it
         std::optional<double> depth_mm;
         Look all() const;                    ///< of all looks together
         double part_off_mm() const;          ///< as two looks found it at least
@@ -106,6 +108,11 @@ private:
     Ruling rule(Instant at, const std::vector<LightCause>& causes) const;
     bool rule_on_measurement(Instant at, Ruling& ruling) const;
     bool rule_on_item(const Item& item, Ruling& ruling) const;
+    /// How too little of an item is seen, if it is.
+    enum class Shortfall { none, not_measured, visible_in_part, found_in_part };
+    Shortfall shortfall_of(const Item& item) const;
+    double limit_for(const Item& item, double share) const;
+    bool measured(const Item& item) const;
     void take(Instant at, const ItemLight& seen, Item& item) const;
     void forget();
     std::string said(double off_mm) const;  ///< as every figure of an error here

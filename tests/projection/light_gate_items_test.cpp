@@ -43,6 +43,27 @@ TEST(LightGate, AnItemThatIsNotFoundForTheMostPartIsNotGreen) {
     EXPECT_EQ(after(gate, now, 40, check).trust, LightTrust::aligned);
 }
 
+// At a limit the banner must not go back and forth: what fell short must be clearly enough before it is enough again.
+TEST(LightGate, AnItemAtItsLimitDoesNotFlicker) {
+    const auto greens = [](const std::vector<int>& seen_of_100) {
+        LightGate gate;
+        Instant now{};
+        gate.verify(now);
+        LightCheck check = seen_at(0.1, 55, 68);
+        check.items = {item("Holes", 48, 48, 0.1), item("T1", 0, 100, 0.1)};
+        check.items[1].extent_mm = 20;
+        std::vector<bool> result;
+        for (const int seen : seen_of_100) {
+            check.items[1].seen = seen;
+            result.push_back(after(gate, now, 40, check).trust == LightTrust::aligned);
+        }
+        return result;
+    };
+    EXPECT_EQ(greens({31, 29, 31, 29}), (std::vector{false, false, false, false})) << "never clearly enough";
+    EXPECT_EQ(greens({35, 31, 29, 31, 28}), (std::vector{true, true, true, true, true}));
+    EXPECT_EQ(greens({35, 26, 29, 31, 34}), (std::vector{true, false, false, false, true}));
+}
+
 // Of a hole or a way in the cameras see some of its ring and marks: what they see lies within 30 mm of the rest.
 TEST(LightGate, OfASmallItemSomeIsEnoughWhereItTellsBothDirections) {
     LightCheck check = seen_at(0.1, 55, 68);
