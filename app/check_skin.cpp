@@ -12,7 +12,6 @@ SkinCheck Session::measure_skin(const std::function<void(int, int)>& progress) {
     if (!registration_ || registration_->verdict == Verdict::no)
         throw CheckFailedError("there is no match to compare the skin with", "Scan and register first.");
     overlay_.reset();
-    forget_last_light();  // stripes take its place
     projector_.go_dark();
     const ScanCapture capture =
         capture_scan(projector_, cameras_, clock_, fast_stripes(projector_.width(), projector_.height()), progress);
@@ -36,6 +35,7 @@ SkinCheck Session::measure_skin(const std::function<void(int, int)>& progress) {
     ScanSettings scan = settings_.scan;
     scan.use_resection = false;
     const ScanResult skin = scan_from_capture(capture, rig_, scan);
+    if (!skin.clean.kept.empty()) forget_last_light();  // stripes took its place
     compare_skin(skin.clean.kept, case_, *registration_, *before.rig_from_patient * registration_->patient_from_ct,
                  settings_.resume.max_more_residual_mm, check);
     return check;

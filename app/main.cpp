@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
@@ -58,7 +59,21 @@ void refuse_nan(CLI::App& command) {
         if (option->get_type_name().starts_with("FLOAT")) option->check(CLI::Validator(is_number, ""));
 }
 
+/// The first option that was given an empty value, as a shell does of a variable that is not set; empty: none. It would
+/// be taken as not given.
+std::string given_empty(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options())
+        if (!option->get_lnames().empty() && option->get_expected_max() > 0 &&
+            std::ranges::any_of(option->results(), &std::string::empty))
+            return "--" + option->get_lnames().front();
+    return {};
+}
+
 int run_command(const CLI::App& command, const Run& run, const ConsoleSettings& console, const std::string& line) {
+    if (const std::string option = given_empty(command); !option.empty()) {
+        print_to_user(fmt::format("planlight: {} is given, and empty. Give it a value, or leave it out.\n", option));
+        return static_cast<int>(ExitCode::usage);
+    }
     if (const std::string problem = overwritten_input(command); !problem.empty()) {  // before the log is opened
         print_to_user(fmt::format("planlight: {}\n", problem));
         return static_cast<int>(ExitCode::usage);

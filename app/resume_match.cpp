@@ -100,10 +100,12 @@ ResumeCheck Session::take_up(const KeptMatch& match, const std::function<void(in
     rig.made_on = calibrated_.made_on;
     use_rig(rig);
     tracker_.set_reference(match.markers);
+    ++references_;
     light_part(match.lit);
     ResumeCheck check;
     const RigidTransform rig_from_patient = compare_room(match, progress, check);
     compare_skin_again(match, rig_from_patient, check);
+    forget_last_light();  // stripes took its place
     registration_ = match.registration;
     rig_state_ = registration_->rig;
     confirmed_ = match.confirmed;

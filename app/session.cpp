@@ -134,6 +134,7 @@ void Session::make_scan(const std::function<void(int, int)>& progress) {
         exposures.resize(1);
     scanned_ = scan_from_exposures(exposures, calibrated_, settings_.scan);
     if (scanned_->clean.kept.empty()) refuse_scan_without_skin();
+    forget_last_light();  // stripes took its place
     capture_ = std::move(exposures.front());
     take_rig(*capture_);
 }
@@ -152,7 +153,6 @@ void Session::refuse_scan_without_skin() {
 
 void Session::use_rig(const RigCalibration& rig) {
     overlay_.reset();
-    forget_last_light();
     rig_ = rig;
     tracker_ = PatientTracker(rig_, settings_.tracking);
     set_hidden({});
@@ -174,6 +174,7 @@ void Session::take_rig(const ScanCapture& capture) {
 /// The markers of the white picture, the first of the scan: `patient` equals `rig` there.
 std::size_t Session::reference_markers(const ScanCapture& capture) {
     const StereoFrame white{capture.left.front(), capture.right.front(), capture.began, Instant{}, 0};
+    ++references_;
     return tracker_.set_reference(white).size();
 }
 
@@ -236,8 +237,7 @@ void Session::draw_on_skin_as_found() {
     const RigidTransform ct_from_patient = registration_->patient_from_ct.inverse();
     for (const auto& marker : tracker_.markers())
         drawing.keep_clear_in_ct.push_back(ct_from_patient * marker.centre_in_patient);
-    darkness_.reset();  // its skin goes; what was lit last may still be
-    now_.emplace(case_, planned_, registration_->skin, drawing);
+    now_ = std::make_shared<const CaseDrawing>(case_, planned_, registration_->skin, drawing);
     set_hidden(hidden_);  // of this drawing
     renderer_ = std::make_unique<DrawingRenderer>(now_->skin, rig_.projector);
 }

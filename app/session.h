@@ -132,7 +132,8 @@ public:
         /// The light of the picture before, as this frame shows it; empty where it was not looked at, or not lit for
         /// the whole exposure.
         std::optional<LightCheck> light;
-        bool light_stays = false;        ///< it is dark, and the last light is still seen (`Session::light_stays`)
+        /// It is dark, or other light is on, and what was lit before is still seen (`Session::light_stays`).
+        bool light_stays = false;
         std::string camera_doubt;        ///< what is wrong with the cameras though frames come; empty: nothing
         std::vector<LightCause> causes;  ///< of light that is not where it belongs, likeliest first; empty: none
     };
@@ -178,7 +179,8 @@ public:
     }
 
     /// Between updates: whether the last light, put out `SessionSettings::time_to_dark` ago or longer, is seen in this
-    /// frame and in one before it (`DarknessCheck`). False where nothing was lit since the last scan or match.
+    /// frame and in one before it (`DarknessCheck`); or what was lit before that and was never seen to go. False where
+    /// nothing was lit since a projector's stripes were seen on the skin.
     bool light_stays(const StereoFrame& frame);
 
     /// How much later than told the light of this match was found to be; it is drawn ahead by that.
@@ -235,15 +237,20 @@ private:
     const SkinSurface& skin_of_light() const { return now_ ? now_->skin : planned_.skin; }
     void watch_light(Update& update);
     void note_shown(const OverlayStep& overlay);
-    bool sees_last_light(const StereoFrame& frame, const std::function<std::optional<RigidTransform>()>& find_patient);
+    struct LitLight;
+    std::vector<std::size_t> put_out_since(const LitLight& former) const;
+    LightPutOut put_out(const LitLight& former, bool dark) const;
+    bool sees_last_light(const StereoFrame& frame, bool dark,
+                         const std::function<std::optional<RigidTransform>()>& find_patient);
+    void note_lit(const OverlayStep& overlay);
     void forget_last_light();
     void correct_delay(std::vector<LightCause>& causes);
 
     const Case& case_;
     const CaseDrawing& planned_;
-    std::optional<CaseDrawing> now_;   ///< on the skin as the last match found it
-    const RigCalibration calibrated_;  ///< rig.json
-    RigCalibration rig_;               ///< as the last scan found it: cloud, poses and light are made with it
+    std::shared_ptr<const CaseDrawing> now_;  ///< on the skin as the last match found it
+    const RigCalibration calibrated_;         ///< rig.json
+    RigCalibration rig_;                      ///< as the last scan found it: cloud, poses and light are made with it
     std::optional<RigState> rig_state_;
     ObservedDevices devices_;
     Projector& projector_;
@@ -263,17 +270,26 @@ private:
     /// What the checker looks for: what is lit, or the one item that is bright.
     std::shared_ptr<const PlanDrawing> looked_for_;
     std::optional<std::size_t> bright_item_;
-    struct LastLight {
+    struct LitLight {
         Instant lit_from{};
         RigidTransform rig_from_ct;
-        RigidTransform patient_from_ct;  ///< of the match that it was lit by
+        RigidTransform patient_from_ct;  ///< of the match that it was lit by,
+        int reference = 0;               ///< and `references_` then: whose frame patient is
         std::shared_ptr<const PlanDrawing> drawing;
         std::optional<std::size_t> bright_item;
+        bool landmark = false;
+        std::shared_ptr<const CaseDrawing> on;  ///< whose skin it is drawn on; empty: `planned_`
+        RigCalibration rig;
         double grey = 0;  ///< `light_grey`; 0: it was not looked at
+        std::unique_ptr<DarknessCheck> check;
+        bool lights(std::size_t item) const;  ///< in full
     };
-    std::optional<LastLight> last_light_;  ///< also through another match; empty: none, or stripes since
-    double lit_grey_ = 0;                  ///< of what the overlay lights, as it was seen last
-    std::unique_ptr<DarknessCheck> darkness_;
+    /// What was ordered last, also through another match; and what was lit before that, until it was seen to go. Empty:
+    /// none, or a projector's stripes were seen since.
+    std::optional<LitLight> last_light_, former_light_;
+    Instant changed_at_{};  ///< from the one to the other
+    double lit_grey_ = 0;   ///< of what the overlay lights, as it was seen last
+    int references_ = 0;    ///< how often the tracker was given one
     Instant darkness_looked_at_{};
     std::vector<ShownPicture> shown_;
     RenderCounts counts_shown_;  ///< of the last picture

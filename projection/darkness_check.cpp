@@ -1,6 +1,8 @@
 #include "projection/darkness_check.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -24,13 +26,46 @@ Stroke without_points(const Stroke& stroke) {
     return bare;
 }
 
+/// Behind the items of `drawing`, whose numbers stay.
+void add_behind(PlanDrawing& drawing, const PlanDrawing& other) {
+    const int first = static_cast<int>(drawing.items.size());
+    drawing.items.insert(drawing.items.end(), other.items.begin(), other.items.end());
+    for (Stroke stroke : other.strokes) {
+        if (stroke.item >= 0) stroke.item += first;
+        drawing.strokes.push_back(std::move(stroke));
+    }
+    for (Label label : other.labels) {
+        if (label.item >= 0) label.item += first;
+        drawing.labels.push_back(std::move(label));
+    }
+}
+
+/// What a check saw of some items.
+struct SeenLight {
+    int expected = 0, seen = 0;  ///< stretches
+    double grey = 0;             ///< `light_grey`
+    double most_off_mm = 0;
+};
+
+SeenLight seen_of_first(const LightCheck& check, std::size_t items) {
+    SeenLight result;
+    std::vector<double> grey;
+    for (const SeenSegment& segment : check.segments) {
+        if (segment.item >= static_cast<int>(items)) continue;
+        result.expected += !segment.tick || segment.seen ? 1 : 0;
+        if (!segment.seen) continue;
+        ++result.seen;
+        result.most_off_mm = std::max(result.most_off_mm, std::abs(segment.off_mm));
+        grey.push_back(segment.brighter * segment.background);
+    }
+    result.grey = grey.empty() ? 0 : quantile(std::move(grey), 0.5);
+    return result;
+}
+
 }  // namespace
 
 double light_grey(const LightCheck& check) {
-    std::vector<double> grey;
-    for (const SeenSegment& segment : check.segments)
-        if (segment.seen) grey.push_back(segment.brighter * segment.background);
-    return grey.empty() ? 0 : quantile(grey, 0.5);
+    return seen_of_first(check, std::numeric_limits<int>::max()).grey;
 }
 
 PlanDrawing light_on_moved_head(const PlanDrawing& drawing, const SkinSurface& skin, const CameraModel& projector,
@@ -63,36 +98,44 @@ PlanDrawing light_on_moved_head(const PlanDrawing& drawing, const SkinSurface& s
     return moved;
 }
 
-DarknessCheck::DarknessCheck(PlanDrawing lit, const SkinSurface& skin, const RigCalibration& rig,
-                             const RigidTransform& rig_from_ct_when_lit, double grey_when_lit,
-                             const CheckLightSettings& look, std::optional<std::size_t> bright_item,
-                             const DarknessSettings& settings)
-    : drawing_(std::move(lit)),
+DarknessCheck::DarknessCheck(LightPutOut light, const SkinSurface& skin, const RigCalibration& rig,
+                             const CheckLightSettings& look, const DarknessSettings& settings)
+    : light_(std::move(light)),
       skin_(skin),
       rig_(rig),
-      when_lit_(rig_from_ct_when_lit),
-      stands_at_(rig_from_ct_when_lit),
-      grey_when_lit_(grey_when_lit),
+      stands_at_(light_.rig_from_ct),
       look_(look),
-      bright_item_(bright_item),
       settings_(settings) {
     look_.far_too = false;
 }
 
 void DarknessCheck::stand_at(const RigidTransform& rig_from_ct) {
-    if (checker_ && moved_mm(drawing_, stands_at_, rig_from_ct) < settings_.moved_mm) return;
+    if (checker_ && moved_mm(light_.drawing, stands_at_, rig_from_ct) < settings_.moved_mm) return;
     stands_at_ = rig_from_ct;
-    const bool moved = moved_mm(drawing_, when_lit_, rig_from_ct) >= settings_.moved_mm;
-    checker_.emplace(moved ? light_on_moved_head(drawing_, skin_, rig_.projector, when_lit_, rig_from_ct) : drawing_,
-                     skin_, rig_, look_, bright_item_);
+    const bool moved = moved_mm(light_.drawing, light_.rig_from_ct, rig_from_ct) >= settings_.moved_mm;
+    PlanDrawing all = moved
+                          ? light_on_moved_head(light_.drawing, skin_, rig_.projector, light_.rig_from_ct, rig_from_ct)
+                          : light_.drawing;
+    add_behind(all, light_.lit_now);
+    checker_.emplace(all, skin_, rig_, look_, light_.bright_item);
+}
+
+bool DarknessCheck::seen_in(const LightCheck& check) const {
+    const SeenLight light = seen_of_first(check, light_.drawing.items.size());
+    if (light.seen == 0 || light.seen < settings_.least_seen_share * light.expected) return false;
+    if (light.grey < settings_.least_of_light * light_.grey) return false;
+    if (light.seen >= settings_.least_seen) return true;
+    return light_.grey > 0 && light.seen >= settings_.least_of_small && light.seen == light.expected &&
+           light.most_off_mm <= settings_.small_off_mm;
 }
 
 bool DarknessCheck::look(const StereoFrame& frame, const std::optional<RigidTransform>& rig_from_ct) {
-    stand_at(rig_from_ct.value_or(when_lit_));
+    stand_at(rig_from_ct.value_or(light_.rig_from_ct));
     const LightCheck check = checker_->look(stands_at_, frame);
-    const bool seen = check.seen >= settings_.least_seen && check.seen_share() >= settings_.least_seen_share &&
-                      light_grey(check) >= settings_.least_of_light * grey_when_lit_;
+    const bool seen = seen_in(check);
+    const bool told = seen_of_first(check, light_.drawing.items.size()).expected >= settings_.least_of_small;
     seen_running_ = seen ? seen_running_ + 1 : 0;
+    unseen_running_ = seen ? 0 : unseen_running_ + (told ? 1 : 0);
     return lit();
 }
 

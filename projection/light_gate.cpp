@@ -157,7 +157,7 @@ void LightGate::take(Instant at, const LightCheck& check) {
     const bool beyond_search = check.far_mm && *check.far_mm > settings_.stop_mm;
     const bool far = beyond_search || (measured && check.most_mm > settings_.stop_mm);
     bad_ = far ? bad_ + 1 : 0;
-    good_ = measured && check.off_mm <= settings_.warn_mm ? good_ + 1 : 0;
+    good_ = measured && check.light_off_mm() <= settings_.warn_mm ? good_ + 1 : 0;
     if (bad_ < settings_.dark_after) return;
     stopped_ = true;
     stopped_at_mm_ = beyond_search ? *check.far_mm : check.off_mm;
@@ -283,8 +283,8 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
             aside = &item;
     }
     if (aside && another_right) return rule_on_item(*aside, ruling);
-    if (last_->off_mm > settings_.warn_mm) {
-        ruling.headline = fmt::format("LOOK: the light lies up to {} mm beside the plan.", said(last_->off_mm));
+    if (last_->light_off_mm() > settings_.warn_mm) {
+        ruling.headline = fmt::format("LOOK: the light lies up to {} mm beside the plan.", said(last_->light_off_mm()));
         ruling.details = {"Wait until the patient lies still; if it stays so, scan again."};
         return true;
     }
@@ -303,7 +303,7 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
 LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& causes) const {
     Ruling ruling;
     ruling.ask_to_verify = !verified_;
-    if (last_ && (last_->seen > 0 || last_->far_mm)) {
+    if (last_ && (last_->seen >= settings_.least_seen || last_->far_mm)) {
         ruling.off_mm = last_->light_off_mm();
         if (!last_->far_mm) ruling.sigma_mm = last_->sigma_mm;
     }

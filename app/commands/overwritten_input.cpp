@@ -59,6 +59,14 @@ bool is_own_file_of(const fs::path& file, const fs::path& folder) {
     return false;
 }
 
+/// A file that a case is made of, whether or not the command reads that case.
+bool is_of_a_case(const fs::path& file) {
+    const fs::path folder = file.parent_path().empty() ? "." : file.parent_path();
+    std::error_code error;
+    return fs::exists(folder / "case.json", error) && fs::exists(folder / "checksums.xxh128", error) &&
+           is_own_file_of(file, folder);
+}
+
 }  // namespace
 
 std::string overwritten_input(const CLI::App& command) {
@@ -82,6 +90,11 @@ std::string overwritten_input(const CLI::App& command) {
                 return fmt::format("{} names {}, a file that {} ({}) is made of: it would be {}. Give it another name.",
                                    option, path.string(), other.path.string(), other.option, what_becomes_of(option));
         }
+        if (command.get_name() != "prepare" && is_of_a_case(path))  // that one makes the whole case anew
+            return fmt::format(
+                "{} names {}, a file that the case in its folder is made of: it would be {}. Give it "
+                "another name.",
+                option, path.string(), what_becomes_of(option));
         for (std::size_t k = 0; k < i; ++k)
             if (same(path, written[k].path))
                 return fmt::format("{} and {} name the same file, {}. Give each its own name.", written[k].option,

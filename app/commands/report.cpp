@@ -13,6 +13,7 @@
 #include "app/report/operation_report.h"
 #include "app/report/site_paper.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/recording/recording_reader.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -56,6 +57,7 @@ void check_out(const Path& out, const Path& pdf, const Path& recording) {
 }
 
 int run_report(const ReportOptions& options) {
+    static_cast<void>(RecordingReader(options.recording));  // is one, before anything is asked of its page's place
     const Path out = options.out.empty() ? Path(options.recording).replace_extension(".html") : options.out;
     check_out(out, options.pdf, options.recording);
     check_can_write(out);

@@ -15,6 +15,7 @@
 #include "app/json_text.h"
 #include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/rig_file.h"
+#include "planning_io/files/safe_write.h"
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 #include "registration/calibration/check_drift.h"
@@ -259,6 +260,8 @@ void judge_fit(const ScanResult& scan, const RigCalibration& rig) {
 
 int run_scan(const ScanOptions& options) {
     marker_design_named(options.markers);  // before long work
+    for (const Path& file : {options.out, options.raw_out, options.surface_out})
+        if (!file.empty()) check_can_write(file);  // all or nothing
     const RigCalibration rig = read_partial_rig(options.rig);
     std::vector<ScanCapture> captures;
     std::vector<Path> folders{options.capture};

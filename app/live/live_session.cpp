@@ -162,7 +162,10 @@ OperatorModel LiveSession::model() const {
         now.scene.light = nullptr;
         now.confirm = now.check_skin = false;
     }
-    if (light_stays_) now.status = light_stays_status();
+    if (light_stays_) {
+        now.status = light_stays_status();
+        now.light_stays = now.light_on = true;
+    }
     return now;
 }
 

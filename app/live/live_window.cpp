@@ -64,7 +64,7 @@ void check_monitor(const std::string& name, const ProjectorFacts& facts) {
 
 /// The light follows the patient, or is about to; a scan's does not.
 bool follows(const OperatorModel& model) {
-    return model.light_on && model.may_light_item;
+    return model.light_on && model.may_light_item && !model.light_stays;
 }
 
 /// And the light of that moment beside it.
@@ -214,7 +214,7 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
             projector->window_lives();
             projector->session_lives(session.alive_at());
         }
-        if (action == OperatorAction::quit) return 0;
+        if (action == OperatorAction::quit) break;
         autoplay.pressed(action);
         if (action != OperatorAction::none) watch.pressed(), put_away.pressed(), begun = true;
         // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays
@@ -241,8 +241,9 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         if (session.projecting() && !projecting_since) projecting_since = now;
         if (options.end_after_s > 0 && projecting_since &&
             now - *projecting_since > std::chrono::duration<double>(options.end_after_s))
-            return 0;
+            break;
     }
+    session.rethrow_fault();  // also one of the moment in which the window ended
     return 0;
 }
 

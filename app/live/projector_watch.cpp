@@ -3,7 +3,9 @@
 namespace planlight {
 
 void ProjectorWatch::put_into(OperatorModel& model) const {
-    if (problem_.may_be_lit) {
+    if (model.light_stays) {
+        if (!problem_.empty()) model.status.details.push_back("No projector: " + problem_.what + ".");
+    } else if (problem_.may_be_lit) {
         model.status = {StatusKind::refused, "The projector's light may still be on.", {problem_.remedy}, {}};
         model.light_on = true;
     } else if (!problem_.empty()) {

@@ -226,6 +226,7 @@ struct OperatorModel {
     std::optional<SceneView> surgeon_view;    ///< as the surgeon stands; empty: not known
     std::optional<SceneView> projector_view;  ///< as the light falls; empty: not known yet
     bool light_on = false;                    ///< light may be on the patient: closing the window asks first
+    bool light_stays = false;                 ///< it was put out, and the cameras still see it: `status` says so
 
     bool operator==(const OperatorModel&) const = default;
 };

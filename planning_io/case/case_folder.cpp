@@ -280,7 +280,12 @@ Case read_case(const fs::path& folder) {
 
     // Whole files of another case are told apart from damaged ones, so identity is looked at before the checksums.
     prepared.lut = read_skin_lut(files.path(kLutFile));
-    prepared.skin = read_mesh(files.path(kSkinMesh));
+    try {
+        prepared.skin = read_mesh(files.path(kSkinMesh));
+    } catch (const Error&) {
+        files.verify(kSkinMesh);  // what cannot be read is the case's to mend, not the mesh's
+        throw;
+    }
     check_same_patient(prepared, manifest.at("mesh_hash").text(), files);
     for (const char* name : {kSkinMesh, kLutFile, kPlanFile}) files.verify(name);
     files.verify_others({kManifest, kSkinMesh, kLutFile, kPlanFile});

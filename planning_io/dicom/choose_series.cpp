@@ -102,7 +102,8 @@ DicomSeries choose_series(const DicomFolder& folder, const fs::path& path, const
             std::ranges::any_of(folder.series,
                                 [](const DicomSeries& s) { return is_x_ray_3d(s.files.front().storage_class); })
                 ? kExportAsCt
-                : "Name a folder with a CT or MR series of slices.");
+            : wanted.empty() ? "Name a folder with a CT or MR series of slices."
+                             : "Choose one of these by its UID (--series UID).");
     if (chosen.size() > 1 && wanted.empty() && chosen.front().slices() < kFewestSlices)
         throw InputError(path,
                          fmt::format("holds no CT or MR volume of {} slices or more; there is:", kFewestSlices) +

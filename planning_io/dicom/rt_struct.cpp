@@ -63,7 +63,7 @@ std::vector<RtRoi> rois_of(vtkDICOMMetaData* meta, const fs::path& file) {
         throw InputError(
             file, "is DICOM of modality " + (modality.empty() ? "unknown" : modality) + ", not an RT Structure Set",
             modality == "SEG" ? "Give it to `planlight prepare --surface`, or export the plan's contours as RTSTRUCT."
-                              : "Export the plan as RT Structure Set.");
+                              : "Name the file of the RT Structure Set by itself, or export the plan as one.");
     std::vector<RtRoi> rois;
     std::map<int, std::size_t> by_number;
     const vtkDICOMSequence sets = meta->Get(DC::StructureSetROISequence);

@@ -143,8 +143,8 @@ void set_head(vtkDICOMMetaData* meta, const RtStructIdentity& identity, const st
 void write_plan_rtstruct(const Plan& plan, const RtStructIdentity& identity, const fs::path& file) {
     check_plan_numbers(plan, file);
     if (identity.frame_of_reference_uid.empty())
-        throw InputError(file, "would not name a frame of reference: the volume has none",
-                         "Export .mrk.json or .vtp, or prepare the case from a DICOM series.");
+        throw InputError(file, "would not name a frame of reference: nothing says it",
+                         "Name the patient's DICOM series (--volume), or write .mrk.json or .vtp.");
     RoiWriter writer(identity);
     add_items(writer, plan);
     std::string content = identity.code + identity.frame_of_reference_uid + identity.created;

@@ -1,6 +1,8 @@
 // Light that was put out and is still on the skin, because the projector holds its picture.
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "app/session.h"
 #include "planning_io/types/error.h"
 #include "tests/app/played_session.h"
@@ -19,6 +21,7 @@ protected:
         settings.seed = GetParam();
     }
     void start() {
+        session.reset();
         room.emplace(test::example_case().volume, std::vector<Eigen::Vector3d>{}, settings);
         drawing.emplace(test::example_case().prepared);
         session.emplace(test::example_case().prepared, *drawing, room->calibration(), room->projector(),
@@ -42,6 +45,12 @@ protected:
             room->wait(200ms);
             saw += session->light_stays(room->cameras().newest(room->clock().now(), 1s)) ? 1 : 0;
         }
+        return saw;
+    }
+
+    int updates_that_see_it(int updates) {
+        int saw = 0;
+        for (int i = 0; i < updates; ++i) saw += session->update().light_stays ? 1 : 0;
         return saw;
     }
 
@@ -98,6 +107,52 @@ TEST_P(LastLight, IsSeenThroughAnotherMatch) {
     EXPECT_EQ(looks_that_see_it(6), 6);
 }
 
+TEST_P(LastLight, GoesOutForOtherLightToo) {
+    start();
+    follow(8);
+    session->light_landmark(0);
+    EXPECT_EQ(updates_that_see_it(60), 0) << "the plan went out, and a ring is lit";
+    session->light_landmark(std::nullopt);
+    EXPECT_EQ(updates_that_see_it(60), 0);
+    session->hide_item(0);
+    EXPECT_EQ(updates_that_see_it(60), 0);
+    session->light_item(1);
+    EXPECT_EQ(updates_that_see_it(60), 0) << "the others are dim";
+    session->show_item(std::nullopt);
+    EXPECT_EQ(updates_that_see_it(60), 0);
+    session->scan();
+    EXPECT_EQ(looks_that_see_it(8), 0);
+}
+
+/// What was ordered since never reached the skin: what is there is what was lit before.
+TEST_P(LastLight, IsNotThatOfAnOrderThatNeverReachedTheSkin) {
+    const std::vector<std::function<void()>> orders{[&] { session->light_landmark(0); }, [&] { session->hide_item(0); },
+                                                    [&] { session->light_item(1); }};
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+        start();
+        follow(8);
+        room->freeze_projector();
+        orders[i]();
+        EXPECT_GT(updates_that_see_it(60), 20) << i << ": beside what is ordered";
+        session->go_dark();
+        looks_that_see_it(6);
+        EXPECT_EQ(looks_that_see_it(4), 4) << i;
+    }
+}
+
+/// Stripes that never reached the skin take nothing's place.
+TEST_P(LastLight, IsSeenAfterStripesThatNobodySaw) {
+    start();
+    follow(8);
+    room->freeze_projector();
+    session->check_skin();
+    looks_that_see_it(4);
+    EXPECT_EQ(looks_that_see_it(4), 4) << "after a check of the skin";
+    EXPECT_THROW(session->scan(), CheckFailedError);
+    looks_that_see_it(4);
+    EXPECT_EQ(looks_that_see_it(4), 4) << "after a scan";
+}
+
 /// Somebody drew over the lines in white: half as bright as the light, and there when it has gone.
 TEST_P(LastLight, IsBrighterThanInkAlongItsLines) {
     start();
@@ -110,7 +165,7 @@ TEST_P(LastLight, IsBrighterThanInkAlongItsLines) {
     const double seen_grey = light_grey(*lit.light);
     const RigidTransform rig_from_ct = *lit.pose.rig_from_patient * session->registration()->patient_from_ct;
     const auto looks_lit = [&](double grey_when_lit) {
-        DarknessCheck check(session->lit_drawing(), drawing->skin, session->rig(), rig_from_ct, grey_when_lit);
+        DarknessCheck check({session->lit_drawing(), rig_from_ct, grey_when_lit}, drawing->skin, session->rig());
         check.look(lit.frame);
         return check.look(lit.frame);
     };

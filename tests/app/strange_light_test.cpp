@@ -11,6 +11,7 @@
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/volume/read_volume.h"
 #include "projection/check_light.h"
+#include "projection/darkness_check.h"
 #include "projection/light_gate.h"
 #include "registration/simulation/simulated_rig.h"
 #include "tests/support/test_data.h"
@@ -294,6 +295,42 @@ protected:
         EXPECT_GE(dark, 7) << "of 9: " << name;
     }
 };
+
+/// The cameras tell it by a few stretches alone, of its ring and marks.
+TEST_F(StrangeLight, OneScrewThatStaysLitAloneIsSeen) {
+    room_.preset = simulation::Preset::paper;
+    Case the_case = *case_;
+    the_case.plan = screws_of_a_plate();
+    const CaseDrawing drawing(the_case);
+    simulation::SimulatedRig rig(*volume_, points_of(the_case.plan), room_);
+    const RigidTransform rig_from_ct = rig.true_rig_from_ct(rig.clock().now());
+    const DrawingRenderer renderer(drawing.skin, rig.calibration().projector);
+    int told = 0;
+    for (std::size_t screw = 0; screw < drawing.drawing.items.size(); ++screw) {
+        RenderSettings one;
+        one.only_item = static_cast<int>(screw);
+        PlanDrawing alone = drawing.drawing;
+        std::erase_if(alone.strokes, [&](const Stroke& s) { return s.item != static_cast<int>(screw); });
+        alone.labels.clear();
+        const RgbImage picture = renderer.render(drawing.drawing, rig_from_ct, RigidTransform::Identity(), one);
+        const Instant lit = rig.projector().show(picture, rig.clock().now() + 10s);
+        const StereoFrame frame = rig.cameras().grab(lit, 1s);
+        const LightCheck check = LightChecker(alone, drawing.skin, rig.calibration()).look(rig_from_ct, frame);
+        if (check.seen < 2) continue;  // not told apart while it is lit either
+        ++told;
+        DarknessCheck darkness({alone, rig_from_ct, light_grey(check)}, drawing.skin, rig.calibration());
+        int looks = 0;  // of which one now and then may miss it
+        for (int i = 0; i < 10; ++i) looks += darkness.look(rig.cameras().grab(rig.clock().now(), 1s)) ? 1 : 0;
+        EXPECT_GE(looks, 4) << screw << ": " << check.seen << " of " << check.expected << ", " << check.off_mm << " mm";
+        rig.projector().go_dark();
+        rig.wait(300ms);
+        for (int i = 0; i < 3; ++i) {
+            darkness.look(rig.cameras().grab(rig.clock().now(), 1s));
+            EXPECT_FALSE(i > 0 && darkness.lit()) << screw;
+        }
+    }
+    EXPECT_GE(told, 3);
+}
 
 TEST_F(FarLight, OfAPlanGoesDark) {
     expect_dark("example", example());

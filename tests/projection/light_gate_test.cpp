@@ -36,6 +36,28 @@ TEST(LightGate, LightThatIsFoundFarAsideGoesOut) {
 }
 
 /// Strokes that are mistaken near their place do not say how far off it is.
+// It takes two running to go dark; until then it is no good look, and not green.
+TEST(LightGate, LightThatIsFoundFarAsideNowAndThenIsNotGreen) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    EXPECT_EQ(after(gate, now, 40, seen_at(0.1, 38, 40)).trust, LightTrust::aligned);
+    for (int i = 0; i < 10; ++i) {
+        const auto far = after(gate, now, 1, found_far(7, 0.1, 28));
+        EXPECT_EQ(far.trust, LightTrust::look) << i;
+        EXPECT_NE(far.headline.find("7.0 mm beside"), std::string::npos) << far.headline;
+        EXPECT_EQ(after(gate, now, 1, seen_at(0.1, 28, 40)).trust, LightTrust::look) << i;
+    }
+}
+
+// Two ridges found by chance where the lens is covered are no figure of error.
+TEST(LightGate, OfTooFewStretchesThereIsNoFigure) {
+    LightGate gate;
+    Instant now{};
+    EXPECT_FALSE(after(gate, now, 1, seen_at(0.1, 2, 40)).off_mm);
+    EXPECT_TRUE(after(gate, now, 1, seen_at(0.1, 20, 40)).off_mm);
+}
+
 TEST(LightGate, TheErrorOfLightThatIsFoundFarAsideIsHowFar) {
     LightGate gate;
     Instant now{};

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "app/live/session_states.h"
+
 namespace planlight {
 namespace {
 
@@ -47,6 +49,20 @@ TEST(ProjectorWatch, ThatCannotBeMadeDarkIsNotSaidToBe) {
     EXPECT_EQ(model.status.headline, "The projector's light may still be on.");
     EXPECT_EQ(model.status.details, std::vector<std::string>{"Switch the projector off by hand."});
     EXPECT_TRUE(model.light_on);
+}
+
+/// A video link that hangs may be gone for the computer, and its picture on the skin for the cameras.
+TEST(ProjectorWatch, ThatIsAwayDoesNotTakeThePlaceOfLightThatIsSeen) {
+    ProjectorWatch watch(1);
+    watch.look(kUnplugged, 1);
+    OperatorModel model = dark();
+    model.status = light_stays_status();
+    model.light_stays = model.light_on = true;
+    watch.put_into(model);
+    EXPECT_EQ(model.status.kind, StatusKind::refused);
+    EXPECT_EQ(model.status.headline, light_stays_status().headline);
+    EXPECT_TRUE(model.light_on);
+    EXPECT_EQ(model.status.details.back(), "No projector: monitor HDMI-2 is no longer connected.");
 }
 
 TEST(ProjectorWatch, ThatIsAwayStandsInPlaceOfTheStatusAndIsToldOfOnceItIsBack) {
