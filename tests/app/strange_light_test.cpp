@@ -311,7 +311,7 @@ TEST_F(StrangeLight, OneScrewThatStaysLitAloneIsSeen) {
         one.only_item = static_cast<int>(screw);
         PlanDrawing alone = drawing.drawing;
         std::erase_if(alone.strokes, [&](const Stroke& s) { return s.item != static_cast<int>(screw); });
-        alone.labels.clear();
+        std::erase_if(alone.labels, [&](const Label& l) { return l.item != static_cast<int>(screw); });
         const RgbImage picture = renderer.render(drawing.drawing, rig_from_ct, RigidTransform::Identity(), one);
         const Instant lit = rig.projector().show(picture, rig.clock().now() + 10s);
         const StereoFrame frame = rig.cameras().grab(lit, 1s);
