@@ -143,8 +143,9 @@ void set_head(vtkDICOMMetaData* meta, const RtStructIdentity& identity, const st
 void write_plan_rtstruct(const Plan& plan, const RtStructIdentity& identity, const fs::path& file) {
     check_plan_numbers(plan, file);
     if (identity.frame_of_reference_uid.empty())
-        throw InputError(file, "would not name a frame of reference: nothing says it",
-                         "Name the patient's DICOM series (--volume), or write .mrk.json or .vtp.");
+        throw InputError(
+            file, "would not name a frame of reference: nothing says it",
+            "Write .mrk.json or .vtp, or give the DICOM series that the plan is of, or a case made from one.");
     RoiWriter writer(identity);
     add_items(writer, plan);
     std::string content = identity.code + identity.frame_of_reference_uid + identity.created;

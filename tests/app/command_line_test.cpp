@@ -71,7 +71,7 @@ TEST_F(CommandLineTest, APdfIsCalledSoAndStandsWhereItCanBeWritten) {
     for (const std::string line :
          {"prepare volume.nii --plan p.fcsv --out case", "register case --cloud c.ply --out r.json",
           "calibrate captures --board 'charuco 10x7 25 mm'", "projector recording",
-          "demo --headless --volume volume.nii", "report a.plrec"}) {
+          "demo --headless --volume volume.nii"}) {
         expect_refused(run(line + " --pdf page.html"), 3, "page.html");
         EXPECT_NE(run(line.substr(0, line.find(' ')) + " --help").out.find("--pdf"), std::string::npos) << line;
     }
@@ -93,6 +93,33 @@ TEST_F(CommandLineTest, OptionsThatDoNotMakeAWholeQuestionAreAMatterOfUsage) {
 TEST_F(CommandLineTest, JsonIsNoPartOfWhatIsDoneInAWindow) {
     expect_refused(run("review case --cloud cloud.ply --landmarks pairs.csv --json"), 2, "--landmarks excludes --json");
     expect_refused(run("replay session.plrec --show --json"), 2, "--show excludes --json");
+}
+
+// A shell makes nothing of a variable that is not set; the work must not go on as if the option were not there.
+TEST_F(CommandLineTest, AnOptionThatIsGivenEmptyIsNoOptionThatIsLeftOut) {
+    for (const std::string line :
+         {"prepare volume.nii --plan p.fcsv --out case --surface ''",
+          "project case --rig r.json --registration r --poses '' --out l.png", "plan p.fcsv --case ''",
+          "register case --cloud c.ply --out ''", "board --out ''", "plan p.fcsv --log-file ''"})
+        expect_refused(run(line), 2, "is given, and empty");
+    EXPECT_FALSE(fs::exists(folder_ / ".png"));
+}
+
+TEST_F(CommandLineTest, WhatACaseIsMadeOfIsNotWrittenOverByWhoDoesNotReadIt) {
+    fs::create_directories(folder_ / "theirs");
+    for (const char* name : {"case.json", "checksums.xxh128", "skin.ply", "plan.mrk.json"})
+        std::ofstream(folder_ / "theirs" / name) << "kept";
+    expect_refused(run("scan capture --rig rig.json --out theirs/skin.ply"), 2, "a file that the case in its folder");
+    expect_refused(run("plan other.csv --frame LPS --out theirs/plan.mrk.json"), 2, "a file that the case");
+    EXPECT_EQ(whole(folder_ / "theirs/skin.ply"), "kept");
+    EXPECT_EQ(run("plan other.csv --frame LPS --out theirs/mine.mrk.json").err.find("a file that the case"),
+              std::string::npos);
+}
+
+TEST_F(CommandLineTest, AReportIsOfARecording) {
+    expect_refused(run("report none/none.plrec"), 3, "Name a recording");
+    std::ofstream(folder_ / "plan.json") << "{}";
+    expect_refused(run("report plan.json"), 3, "is no recording of a session");
 }
 
 TEST_F(CommandLineTest, AMistypedCommandIsToldTheNearestOne) {

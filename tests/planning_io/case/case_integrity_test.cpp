@@ -122,5 +122,23 @@ TEST(CaseFolder, ALutOfAnotherCaseIsRefusedAndDamageInAnyFileIsFound) {
     EXPECT_THROW(read_case(folder.path()), InputError);
 }
 
+// Nobody is to mend a patient's skin by hand.
+TEST(CaseFolder, ASkinThatCannotBeReadIsTheCasesDamageNotAForeignMeshs) {
+    const test::TemporaryFolder folder;
+    write_case(a_case(10), folder.path() / "case");
+    const fs::path skin = folder.path() / "case" / "skin.ply";
+    const std::string whole = read_whole(skin);
+    for (const std::string& damaged : {std::string(), whole.substr(0, 100), whole.substr(0, whole.size() / 2),
+                                       std::string("ply\nformat ascii 1.0\nelement vertex 0\nend_header\n")}) {
+        write_safely(skin, damaged);
+        try {
+            read_case(folder.path() / "case");
+            ADD_FAILURE() << "took " << damaged.size() << " bytes";
+        } catch (const DamagedFileError& e) {
+            EXPECT_NE(e.remedy.find("repare the case again"), std::string::npos) << e.remedy;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace planlight
