@@ -120,6 +120,7 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case, c
     room.seed = options.seed;
     auto resume = window.while_made(kLookedAt, 0.5, [&] { return resume_of(options, the_case, nullptr); });
     const CaseDrawing drawing = drawing_of(options, the_case, site, window);
+    window.window();  // throws without a display: before a recording is begun
     Listeners listeners(options, the_case, site, drawing.settings);
     LiveOptions live = live_options(options, site, listeners);
     live.resume = std::move(resume);
@@ -143,6 +144,7 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
     if (options.projector_file.empty() && options.light_delay_ms < 0) options.projector_file = room.projector_file;
     auto resume = window.while_made(kLookedAt, 0.3, [&] { return resume_of(options, the_case, &rig); });
     const CaseDrawing drawing = drawing_of(options, the_case, site, window);
+    window.window();  // throws without a display: before a recording is begun
     Listeners listeners(options, the_case, site, drawing.settings);
     LiveOptions live = live_options(options, site, listeners);
     live.resume = std::move(resume);

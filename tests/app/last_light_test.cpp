@@ -54,6 +54,19 @@ protected:
         return saw;
     }
 
+    void goes_out_for_other_light() {
+        session->light_landmark(0);
+        EXPECT_EQ(updates_that_see_it(60), 0) << "the plan went out, and a ring is lit";
+        session->light_landmark(std::nullopt);
+        EXPECT_EQ(updates_that_see_it(60), 0);
+        session->hide_item(0);
+        EXPECT_EQ(updates_that_see_it(60), 0);
+        session->light_item(1);
+        EXPECT_EQ(updates_that_see_it(60), 0) << "the others are dim";
+        session->show_item(std::nullopt);
+        EXPECT_EQ(updates_that_see_it(60), 0);
+    }
+
     simulation::RoomSettings settings;
     std::optional<simulation::SimulatedRig> room;
     std::optional<CaseDrawing> drawing;
@@ -110,18 +123,16 @@ TEST_P(LastLight, IsSeenThroughAnotherMatch) {
 TEST_P(LastLight, GoesOutForOtherLightToo) {
     start();
     follow(8);
-    session->light_landmark(0);
-    EXPECT_EQ(updates_that_see_it(60), 0) << "the plan went out, and a ring is lit";
-    session->light_landmark(std::nullopt);
-    EXPECT_EQ(updates_that_see_it(60), 0);
-    session->hide_item(0);
-    EXPECT_EQ(updates_that_see_it(60), 0);
-    session->light_item(1);
-    EXPECT_EQ(updates_that_see_it(60), 0) << "the others are dim";
-    session->show_item(std::nullopt);
-    EXPECT_EQ(updates_that_see_it(60), 0);
+    goes_out_for_other_light();
     session->scan();
     EXPECT_EQ(looks_that_see_it(8), 0);
+}
+
+TEST_P(LastLight, GoesOutForOtherLightOnAHeadThatMoves) {
+    start();
+    room->set_motion({15, room->clock().now()});
+    follow(8);
+    goes_out_for_other_light();
 }
 
 /// What was ordered since never reached the skin: what is there is what was lit before.

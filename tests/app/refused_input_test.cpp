@@ -192,6 +192,11 @@ TEST_F(CommandsTest, AWindowWithoutADisplayIsADeviceError) {
     prepared();
     const auto run = run_planlight("review case", root());
     expect_one_clear_sentence(run, 5, "--picture");
+    const auto session = run_planlight("session case --volume '" + patient() + "'", root());
+    EXPECT_EQ(session.exit_code, 5) << session.err;
+    EXPECT_NE(session.err.find("Display"), std::string::npos) << session.err;
+    EXPECT_FALSE(std::filesystem::exists(root() / "case" / "recordings"))
+        << "nothing happened, and nothing is recorded";
 }
 
 }  // namespace
