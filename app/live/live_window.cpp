@@ -205,7 +205,8 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         const OperatorAction action = window.frame(model);
         const double rest_s = rest_after(std::chrono::steady_clock::now() - frame_began);
         const bool unseen = put_away.look(window, model.light_on);
-        if (unseen && model.light_on) {
+        // Light that stays obeys no press; what is ordered beside it does.
+        if (unseen && model.light_on && (!model.light_stays || session.projecting())) {
             session.post(OperatorAction::dark, AskedBy::program);
             if (projector) projector->go_dark();
             autoplay.pressed(OperatorAction::dark);  // by whoever put the window away
