@@ -62,6 +62,14 @@ SeenLight seen_of_first(const LightCheck& check, std::size_t items) {
     return result;
 }
 
+bool is_the_light(const SeenLight& looked, double grey_when_lit, const DarknessSettings& settings) {
+    if (looked.seen == 0 || looked.seen < settings.least_seen_share * looked.expected) return false;
+    if (looked.grey < settings.least_of_light * grey_when_lit) return false;
+    if (looked.seen >= settings.least_seen) return true;
+    return grey_when_lit > 0 && looked.seen >= settings.least_of_small && looked.seen == looked.expected &&
+           looked.most_off_mm <= settings.small_off_mm;
+}
+
 }  // namespace
 
 double light_grey(const LightCheck& check) {
@@ -120,22 +128,15 @@ void DarknessCheck::stand_at(const RigidTransform& rig_from_ct) {
     checker_.emplace(all, skin_, rig_, look_, light_.bright_item);
 }
 
-bool DarknessCheck::seen_in(const LightCheck& check) const {
-    const SeenLight light = seen_of_first(check, light_.drawing.items.size());
-    if (light.seen == 0 || light.seen < settings_.least_seen_share * light.expected) return false;
-    if (light.grey < settings_.least_of_light * light_.grey) return false;
-    if (light.seen >= settings_.least_seen) return true;
-    return light_.grey > 0 && light.seen >= settings_.least_of_small && light.seen == light.expected &&
-           light.most_off_mm <= settings_.small_off_mm;
-}
-
 bool DarknessCheck::look(const StereoFrame& frame, const std::optional<RigidTransform>& rig_from_ct) {
     stand_at(rig_from_ct.value_or(light_.rig_from_ct));
-    const LightCheck check = checker_->look(stands_at_, frame);
-    const bool seen = seen_in(check);
-    const bool told = seen_of_first(check, light_.drawing.items.size()).expected >= settings_.least_of_small;
+    const SeenLight looked = seen_of_first(checker_->look(stands_at_, frame), light_.drawing.items.size());
+    const bool seen = is_the_light(looked, light_.grey, settings_);
     seen_running_ = seen ? seen_running_ + 1 : 0;
-    unseen_running_ = seen ? 0 : unseen_running_ + (told ? 1 : 0);
+    if (seen)
+        unseen_running_ = 0;
+    else if (looked.expected >= settings_.least_of_small)  // else it could not have been seen
+        ++unseen_running_;
     return lit();
 }
 

@@ -62,7 +62,6 @@ public:
 
 private:
     void stand_at(const RigidTransform& rig_from_ct);
-    bool seen_in(const LightCheck& check) const;
 
     LightPutOut light_;
     const SkinSurface& skin_;

@@ -248,7 +248,7 @@ void print(const Case& the_case, const RegistrationResult& result, const nlohman
 int run_register(const RegisterOptions& options) {
     check_pdf(options.pdf);
     for (const Path& file : {options.out, options.certificate, options.slicer_transform})
-        if (!file.empty()) check_can_write(file);  // all or nothing
+        if (!file.empty()) check_can_write(file);  // of all, before one is written
     const Case the_case = read_case(options.case_folder);
     std::shared_ptr<const PointCloud> cloud;
     std::optional<RigState> rig;

@@ -261,7 +261,7 @@ void judge_fit(const ScanResult& scan, const RigCalibration& rig) {
 int run_scan(const ScanOptions& options) {
     marker_design_named(options.markers);  // before long work
     for (const Path& file : {options.out, options.raw_out, options.surface_out})
-        if (!file.empty()) check_can_write(file);  // all or nothing
+        if (!file.empty()) check_can_write(file);  // of all, before one is written
     const RigCalibration rig = read_partial_rig(options.rig);
     std::vector<ScanCapture> captures;
     std::vector<Path> folders{options.capture};

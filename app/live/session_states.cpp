@@ -218,7 +218,7 @@ void enter(SessionState state, const OperatorModel& blank, OperatorModel& model,
         model.steps[static_cast<std::size_t>(i)] = i < view.step    ? StepState::done
                                                    : i == view.step ? view.step_state
                                                                     : StepState::waiting;
-    if (!view.lights || !view.has_match || state == SessionState::checking_skin) {  // no light of the plan
+    if (!view.lights || !view.has_match || view.kind == StatusKind::scanning) {  // dark, or stripes
         model.look_at = std::nullopt;
         model.figures = {};
         model.scene.light = nullptr;

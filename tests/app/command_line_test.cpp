@@ -116,6 +116,14 @@ TEST_F(CommandLineTest, WhatACaseIsMadeOfIsNotWrittenOverByWhoDoesNotReadIt) {
               std::string::npos);
 }
 
+TEST_F(CommandLineTest, WhereOneOfItsFilesCannotStandNoneIsWritten) {
+    for (const std::string line : {"register case --cloud c.ply --out r.json --certificate none/c.html",
+                                   "register case --cloud c.ply --out r.json --slicer none/t.tfm",
+                                   "scan capture --rig rig.json --out c.ply --raw none/raw.ply",
+                                   "scan capture --rig rig.json --out c.ply --surface none/s.ply"})
+        expect_refused(run(line), 7, "none");  // before anything is read: none of it is there
+}
+
 TEST_F(CommandLineTest, AReportIsOfARecording) {
     expect_refused(run("report none/none.plrec"), 3, "Name a recording");
     std::ofstream(folder_ / "plan.json") << "{}";

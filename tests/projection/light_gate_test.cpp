@@ -35,7 +35,6 @@ TEST(LightGate, LightThatIsFoundFarAsideGoesOut) {
     EXPECT_TRUE(after(gate, now, 10, seen_at(0.1)).stop) << "until it is asked for again";
 }
 
-/// Strokes that are mistaken near their place do not say how far off it is.
 // It takes two running to go dark; until then it is no good look, and not green.
 TEST(LightGate, LightThatIsFoundFarAsideNowAndThenIsNotGreen) {
     LightGate gate;
@@ -58,6 +57,7 @@ TEST(LightGate, OfTooFewStretchesThereIsNoFigure) {
     EXPECT_TRUE(after(gate, now, 1, seen_at(0.1, 20, 40)).off_mm);
 }
 
+/// Strokes that are mistaken near their place do not say how far off it is.
 TEST(LightGate, TheErrorOfLightThatIsFoundFarAsideIsHowFar) {
     LightGate gate;
     Instant now{};

@@ -165,7 +165,7 @@ TEST(SessionStates, AnItemOfTheMomentNeedsAMatchAndGoesWithIt) {
 
 TEST(SessionStates, FiguresStayOnlyWhereLightIsJudged) {
     for (const SessionState state : kSessionStates) {
-        const bool judged = view_of(state).lights && view_of(state).has_match && state != SessionState::checking_skin;
+        const bool judged = state == SessionState::following || state == SessionState::verifying;
         EXPECT_EQ(entered(state).figures == Figures{}, !judged) << name(state);
     }
 }
