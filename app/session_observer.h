@@ -72,6 +72,9 @@ public:
     virtual void device_failed(const Error& /*fault*/) noexcept {}
     virtual void stopped(const Error& /*why*/) noexcept {}
 
+    /// Light that was put out is still seen (`Session::light_stays`), or no longer; told when that changes.
+    virtual void light_stays(bool /*stays*/) noexcept {}
+
     // What came of it; of what was refused, `refused` alone.
     virtual void scanned(const Session& /*session*/) noexcept {}
     virtual void matched(const Session& /*session*/) noexcept {}

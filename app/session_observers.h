@@ -34,6 +34,7 @@ public:
     }
     void went_dark() noexcept override { each(&SessionObserver::went_dark); }
     void cameras_doubted(const std::string& doubt) noexcept override { each(&SessionObserver::cameras_doubted, doubt); }
+    void light_stays(bool stays) noexcept override { each(&SessionObserver::light_stays, stays); }
     void device_failed(const Error& fault) noexcept override { each(&SessionObserver::device_failed, fault); }
     void stopped(const Error& why) noexcept override { each(&SessionObserver::stopped, why); }
     void scanned(const Session& session) noexcept override { each(&SessionObserver::scanned, session); }

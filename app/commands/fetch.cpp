@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -59,7 +60,12 @@ const FoundSeries& only_one(const std::vector<FoundSeries>& found) {
 void check_date(const std::string& date) {
     if (date.empty()) return;
     const auto is_day = [](const std::string& text) {
-        return text.size() == 8 && text.find_first_not_of("0123456789") == std::string::npos;
+        if (text.size() != 8 || text.find_first_not_of("0123456789") != std::string::npos) return false;
+        const auto number = [&](std::size_t from, std::size_t count) { return std::stoi(text.substr(from, count)); };
+        return std::chrono::year_month_day(std::chrono::year(number(0, 4)),
+                                           std::chrono::month(static_cast<unsigned>(number(4, 2))),
+                                           std::chrono::day(static_cast<unsigned>(number(6, 2))))
+            .ok();
     };
     const std::size_t hyphen = date.find('-');
     const std::string from = date.substr(0, hyphen), to = hyphen == std::string::npos ? from : date.substr(hyphen + 1);

@@ -99,13 +99,24 @@ void SessionLink::run(LinkedValues told) {
     }
 }
 
+namespace {
+
+LinkedValues values_of_light_that_stays(LinkedValues values) {
+    values.trust = LightTrust::dark;
+    values.words = "Light that was put out is still seen on the patient: it does not go out.";
+    values.off_mm = values.sigma_mm = std::nullopt;
+    return values;
+}
+
+}  // namespace
+
 /// A link that fails (no memory) must not take the session with it.
 template <class Change>
 void SessionLink::tell(const Change& change) noexcept {
     try {
         const std::lock_guard lock(mutex_);
         change();
-        mailbox_.give(values_);
+        mailbox_.give(light_stays_ ? values_of_light_that_stays(values_) : values_);
         server_.wake();
     } catch (const std::exception&) {
     }
@@ -207,6 +218,13 @@ void SessionLink::updated(const Session& session, const Session::Update& update)
         values_.seen_utc_s = utc_now_s() - age_s;
         if (!update.overlay.lit)
             dark("Dark: " + (update.overlay.reason.empty() ? update.pose.reason : update.overlay.reason) + ".");
+    });
+}
+
+void SessionLink::light_stays(bool stays) noexcept {
+    tell([&] {
+        light_stays_ = stays;
+        values_.said_utc_s = utc_now_s();
     });
 }
 

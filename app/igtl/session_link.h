@@ -39,6 +39,7 @@ public:
     void asked(SessionCall call, const std::vector<PointPair>& landmarks, int which) noexcept override;
     void match_offered(const KeptMatch& match) noexcept override;
     void clock_read(Instant now) noexcept override;
+    void light_stays(bool stays) noexcept override;
     void device_failed(const Error& fault) noexcept override;
     void matched(const Session& session) noexcept override;
     void resumed(const Session& session, const ResumeCheck& check) noexcept override;
@@ -63,6 +64,7 @@ private:
     std::string raw_words_;
     std::string hidden_words_;  ///< how much of the plan is hidden; empty: nothing
     bool dark_stays_ = false;   ///< why it is dark: that it is put out then says nothing new
+    bool light_stays_ = false;  ///< it was put out and is still seen: that is said in place of all else
     LinkedValues values_;
     NewestValue<LinkedValues> mailbox_;
     MessageServer server_;

@@ -176,6 +176,7 @@ void LiveSession::say_whether_light_stays(bool stays) {
         if (light_stays_ == stays) return;
         light_stays_ = stays;
     }
+    if (observer_) observer_->light_stays(stays);
     said();
 }
 

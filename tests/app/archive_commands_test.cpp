@@ -99,6 +99,7 @@ TEST_F(ArchiveCommands, ASeriesBecomesACaseAndWhatCameOfItIsFoundBesideIt) {
 TEST_F(ArchiveCommands, RefusalsHaveTheirExitCodes) {
     expect_refused(run("fetch --patient-id NOBODY --out got"), 3, "finds no such series");
     expect_refused(run("fetch --date 2026-01-01"), 2, "is no day");
+    expect_refused(run("fetch --date 20261399"), 2, "is no day");
     EXPECT_FALSE(fs::exists(folder_.path() / "got"));
     expect_refused(run("fetch --check --title ANOTHER"), 5, "refuses to talk");
     expect_refused(run("fetch --check --port " + std::to_string(test::free_port())), 5, "cannot be reached");

@@ -16,8 +16,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
-#include <numbers>
-#include <random>
 #include <sstream>
 #include <string>
 
@@ -28,50 +26,13 @@
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
 #include "projection/light_gate.h"
-#include "registration/simulation/simulated_rig.h"
+#include "tests/app/faulty_room.h"
 #include "tests/support/test_data.h"
 
 namespace {
 
 using namespace planlight;
 using namespace std::chrono_literals;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-using simulation::SimulatedRig;
-
-/// Shows the picture shifted, or something else instead.
-class Spoilt final : public Projector {
-public:
-    explicit Spoilt(Projector& projector) : projector_(projector) {}
-    int width() const override { return projector_.width(); }
-    int height() const override { return projector_.height(); }
-    Instant show(const RgbImage& picture, Instant valid_until) override {
-        if (instead) return projector_.show(*instead, valid_until);
-        if (shift_px.norm() == 0) return projector_.show(picture, valid_until);
-        RgbImage shifted(picture.width, picture.height);
-        for (int y = 0; y < picture.height; ++y)
-            for (int x = 0; x < picture.width; ++x) shifted.at(x, y) = at(picture, Vector2d(x, y) - shift_px);
-        return projector_.show(shifted, valid_until);
-    }
-    void go_dark() noexcept override { projector_.go_dark(); }
-
-    Vector2d shift_px{0, 0};
-    std::optional<RgbImage> instead;
-
-private:
-    static Rgb at(const RgbImage& picture, const Vector2d& p) {
-        const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y()));
-        if (x < 0 || y < 0 || x + 1 >= picture.width || y + 1 >= picture.height) return {0, 0, 0};
-        const double u = p.x() - x, v = p.y() - y;
-        Rgb mixed{};
-        for (std::size_t c = 0; c < 3; ++c)
-            mixed[c] = static_cast<std::uint8_t>(
-                (1 - v) * ((1 - u) * picture.at(x, y)[c] + u * picture.at(x + 1, y)[c]) +
-                v * ((1 - u) * picture.at(x, y + 1)[c] + u * picture.at(x + 1, y + 1)[c]) + 0.5);
-        return mixed;
-    }
-    Projector& projector_;
-};
 
 struct Outcome {
     std::optional<double> noticed_s;
@@ -123,32 +84,28 @@ const char* name_of(LightFault fault) {
 
 class Room {
 public:
-    Room(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, simulation::Preset preset,
-         unsigned seed, std::chrono::milliseconds computing)
-        : computing_(computing),
-          random_(seed * 7919 + 3),
-          rig_(volume, points_of(the_case.plan), room(preset, seed)),
-          spoilt_(rig_.projector()),
-          session_(the_case, drawing, rig_.calibration(), spoilt_, rig_.cameras(), rig_.clock(), settings()) {
-        session_.scan();
-        if (session_.find_patient().verdict == Verdict::no) throw CheckFailedError("not found", "-");
-        session_.confirm();
+    Room(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const simulation::RoomSettings& room,
+         std::chrono::milliseconds computing)
+        : room_(volume, the_case, drawing, room, computing) {
+        if (!room_.find_patient()) throw CheckFailedError("not found", "-");
     }
 
     /// One draw; empty when the light was not good before the fault.
     std::optional<Outcome> draw(const std::string& fault, bool moving, std::string& right) {
-        session_.go_dark();
-        move(moving || fault == "late");
+        Session& session = room_.session();
+        session.go_dark();
+        room_.move(moving || fault == "late" ? 20 : 0);
         if (!good_for(1s)) return std::nullopt;
-        const auto undo = begin(fault, right);
-        const Instant began = rig_.clock().now();
+        const test::FaultyRoom::Begun begun = room_.begin(fault);
+        right = begun.right;
+        const Instant began = room_.rig().clock().now();
         Outcome outcome;
         std::string seen;
-        const Instant found_before = session_.found_delay();
+        const Instant found_before = session.found_delay();
         LightGate gate;
         gate.verify(began);
-        while (rig_.clock().now() - began < (fault == "good" ? 20s : 2500ms)) {
-            const auto update = session_.update();
+        while (room_.rig().clock().now() - began < (fault == "good" ? 20s : 2500ms)) {
+            const auto update = session.update();
             const auto ruling = gate.step(update.frame.at, update.overlay.lit, update.light, update.causes,
                                           update.pose.external_reliability_mm);
             if (update.light) seen = seen_of(*update.light);
@@ -159,7 +116,7 @@ public:
                         outcome.not_green_for =
                             ruling.headline + " " + (ruling.details.empty() ? "" : ruling.details.front()) + seen;
             }
-            const bool corrected = session_.found_delay() != found_before && outcome.named == "nothing";
+            const bool corrected = session.found_delay() != found_before && outcome.named == "nothing";
             outcome.dark = outcome.dark || !update.overlay.lit;
             if (update.causes.empty() && !corrected && update.overlay.lit) continue;
             const double after_s = seconds(update.frame.at - began);
@@ -173,107 +130,22 @@ public:
             }
             if (outcome.named == "late") break;
         }
-        undo();
+        begun.undo();
         return outcome;
     }
 
 private:
-    static simulation::RoomSettings room(simulation::Preset preset, unsigned seed) {
-        simulation::RoomSettings room;
-        room.preset = preset;
-        room.seed = seed;
-        return room;
-    }
-    SessionSettings settings() {
-        SessionSettings settings;
-        settings.while_computing = [this] { rig_.wait(computing_); };
-        return settings;
-    }
-    void move(bool moving) {
-        if (moving == moving_) return;
-        rig_.set_motion({moving ? 20.0 : 0.0, rig_.clock().now()});
-        moving_ = moving;
-    }
     bool good_for(Instant duration) {
-        const Instant from = rig_.clock().now();
+        const Instant from = room_.rig().clock().now();
         bool good = true;
-        while (rig_.clock().now() - from < duration) {
-            const auto update = session_.update();
+        while (room_.rig().clock().now() - from < duration) {
+            const auto update = room_.session().update();
             good = update.overlay.lit && update.causes.empty();
         }
         return good;
     }
-    Vector3d any_axis() {
-        const double angle = std::uniform_real_distribution<double>(0, 2 * std::numbers::pi)(random_);
-        return {std::cos(angle), std::sin(angle), 0};
-    }
-    std::function<void()> begin(const std::string& fault, std::string& right) {
-        constexpr double kTurn = 0.05 * std::numbers::pi / 180;
-        right = fault == "offset" ? "projector" : fault;
-        if (fault == "offset") {
-            const double mm_per_px = 900 / rig_.calibration().projector.focal_x;
-            spoilt_.shift_px = 0.5 / mm_per_px * any_axis().head<2>();
-            return [this] { spoilt_.shift_px.setZero(); };
-        }
-        if (fault == "late") {
-            rig_.delay_light(20ms);
-            return [this] { rig_.delay_light({}); };
-        }
-        if (fault == "slip" || fault == "cap") {
-            const int markers = static_cast<int>(rig_.true_markers_in_ct().size());
-            const int marker = fault == "cap" ? -1 : std::uniform_int_distribution<int>(0, markers - 1)(random_);
-            const Vector3d at = rig_.true_markers_in_ct()[static_cast<std::size_t>(std::max(marker, 0))];
-            const Vector3d normal = skin_normal(at);
-            std::normal_distribution<double> gauss;
-            const Vector3d any(gauss(random_), gauss(random_), gauss(random_));
-            const Vector3d shift = (fault == "cap" ? 2 : 1) * (any - any.dot(normal) * normal).normalized();
-            rig_.slip_marker(marker, shift);
-            return [this, marker, shift] { rig_.slip_marker(marker, -shift); };
-        }
-        if (fault == "projector" || fault == "camera") {
-            auto device = SimulatedRig::Device::projector;
-            if (fault == "camera") {
-                const bool left = std::uniform_int_distribution<int>(0, 1)(random_) == 0;
-                device = left ? SimulatedRig::Device::left_camera : SimulatedRig::Device::right_camera;
-                right = left ? "left camera" : "right camera";
-            }
-            const Vector3d turn = kTurn * any_axis();
-            rig_.bump(device, turn);
-            return [this, device, turn] { rig_.bump(device, -turn); };
-        }
-        if (fault == "covered") {
-            rig_.cover_projector(true);
-            return [this] { rig_.cover_projector(false); };
-        }
-        if (fault == "window") {
-            RgbImage desktop(spoilt_.width(), spoilt_.height(), {120, 130, 140});
-            for (int y = 0; y < desktop.height / 20; ++y)
-                for (int x = 0; x < desktop.width; ++x) desktop.at(x, y) = {230, 230, 230};
-            spoilt_.instead = desktop;
-            return [this] { spoilt_.instead.reset(); };
-        }
-        right = "nothing";
-        if (fault == "landmark" && !session_.landmarks().empty()) {
-            session_.light_landmark(landmark_++ % session_.landmarks().size());
-            return [this] { session_.light_landmark({}); };
-        }
-        return [] {};
-    }
-    /// From the skin's own shape round the place.
-    Vector3d skin_normal(const Vector3d& at) const {
-        const RigidTransform to_rig = rig_.true_rig_from_ct(rig_.clock().now());
-        const Vector3d towards = (to_rig.inverse() * rig_.calibration().projector.centre_in_rig() - at).normalized();
-        const auto skin = rig_.true_skin_along(at + 20 * towards, -towards);
-        return skin ? skin->normal_in_ct : towards;
-    }
 
-    std::chrono::milliseconds computing_;
-    std::mt19937 random_;
-    SimulatedRig rig_;
-    Spoilt spoilt_;
-    Session session_;
-    bool moving_ = false;
-    std::size_t landmark_ = 0;  ///< lit next
+    test::FaultyRoom room_;
 };
 
 struct Sums {
@@ -317,9 +189,10 @@ int main(int argc, char** argv) {
     const CaseDrawing drawing(prepared.prepared);
     std::map<std::string, Sums> sums;
     for (int k = 0; k < rooms; ++k) {
-        Room room(volume, prepared.prepared, drawing,
-                  preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern,
-                  static_cast<unsigned>(first + k), computing);
+        simulation::RoomSettings settings;
+        settings.preset = preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
+        settings.seed = static_cast<unsigned>(first + k);
+        Room room(volume, prepared.prepared, drawing, settings, computing);
         for (const std::string& fault : faults)
             for (int i = 0; i < draws; ++i) {
                 std::string right;

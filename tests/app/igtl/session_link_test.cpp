@@ -280,22 +280,54 @@ TEST(SessionLink, ThatAPartOfThePlanIsHiddenIsSaidWithTheGatesWord) {
     EXPECT_TRUE(says(doubting.heard(), "Gate", "The plan is on the skin. " + part + " Measured"));
 }
 
-TEST(SessionLink, DarkThatWasPressedIsTheReasonUnlessTheLightWasStopped) {
-    Case the_case;
+/// The gate's last word before the end, of a link that was told this.
+ReceivedMessage last_gate_of(const std::function<void(SessionLink&)>& told) {
+    const Case the_case;
     SessionLinkSettings settings;
     settings.server.port = 0;
-    const auto last_word = [&](const std::function<void(SessionLink&)>& before) {
-        auto link = std::make_unique<SessionLink>(the_case, settings);
-        before(*link);
-        link->asked(SessionCall::go_dark, {}, -1);
-        test::IgtlReceiver receiver(link->port());
-        while (link->counts().clients == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        link.reset();
-        std::string said;
-        for (const ReceivedMessage& message : receiver.all())
-            if (message.device == "Gate" && message.word != "ended") said = message.text;
-        return said;
+    auto link = std::make_unique<SessionLink>(the_case, settings);
+    told(*link);
+    test::IgtlReceiver receiver(link->port());
+    while (link->counts().clients == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    link.reset();
+    ReceivedMessage last;
+    for (const ReceivedMessage& message : receiver.all())
+        if (message.device == "Gate" && message.word != "ended") last = message;
+    return last;
+}
+
+TEST(SessionLink, LightThatDoesNotGoOutIsSaidInPlaceOfAllElseUntilItHasGone) {
+    LightGate::Ruling aligned;
+    aligned.trust = LightTrust::aligned;
+    aligned.headline = "The plan is on the skin.";
+    const auto stays = [&](SessionLink& link) {
+        link.gate(GateCall::step, {}, 0, &aligned);
+        link.light_stays(true);
+        link.gate(GateCall::step, {}, 0, &aligned);
+    };
+    const ReceivedMessage told = last_gate_of(stays);
+    EXPECT_EQ(told.word, "dark");
+    EXPECT_NE(told.text.find("it does not go out"), std::string::npos) << told.text;
+    EXPECT_NE(last_gate_of([&](SessionLink& link) {
+                  stays(link);
+                  link.asked(SessionCall::go_dark, {}, -1);
+              }).text.find("it does not go out"),
+              std::string::npos);
+    EXPECT_EQ(last_gate_of([&](SessionLink& link) {
+                  stays(link);
+                  link.light_stays(false);
+              }).word,
+              "aligned");
+}
+
+TEST(SessionLink, DarkThatWasPressedIsTheReasonUnlessTheLightWasStopped) {
+    const auto last_word = [](const std::function<void(SessionLink&)>& before) {
+        return last_gate_of([&](SessionLink& link) {
+                   before(link);
+                   link.asked(SessionCall::go_dark, {}, -1);
+               })
+            .text;
     };
     const auto look = [](SessionLink& link) {
         LightGate::Ruling ruling;
