@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "planning_io/types/statistics.h"
 #include "registration/scan/check/picture_noise.h"
 
 namespace planlight::sequence {
@@ -117,6 +118,13 @@ int least_change(const Bytes& low, const Bytes& high, double dark_noise_grey) {
     return std::max(kLit_grey, std::min(static_cast<int>(6 * dark_noise_grey), *strong / 2));
 }
 
+/// What is never brighter than this is dark beside the best lit places, and its noise that of the dark.
+int dark_level(const Bytes& high) {
+    constexpr double kBest = 0.99;
+    constexpr int kShare = 3;
+    return quantile(high, kBest) / kShare;
+}
+
 /// White must be the brightest frame and black the darkest wherever any light changes. The places in the list of those
 /// that are lit so, and neither too dark nor too bright to judge a sum by.
 std::vector<std::size_t> choose_lit(Samples& s) {
@@ -128,8 +136,10 @@ std::vector<std::size_t> choose_lit(Samples& s) {
         }
     std::vector<std::size_t> lit;
     s.least_change = least_change(low, high, s.dark_noise_grey);
+    const int dark = dark_level(high),
+              least_in_dark = std::max(s.least_change, static_cast<int>(6 * s.dark_noise_grey));
     for (std::size_t i = 0; i < low.size(); ++i) {
-        if (high[i] - low[i] < s.least_change) continue;
+        if (high[i] - low[i] < (high[i] < dark ? least_in_dark : s.least_change)) continue;
         ++s.changing;
         const int allowed = std::max((high[i] - low[i]) / 3, static_cast<int>(4 * s.noise_grey)),
                   white = s.here[s.white][i], black = s.here[s.black][i];

@@ -314,6 +314,19 @@ TEST(CheckSequence, ACameraThatEncodesForAScreenIsNotRefusedForItsNoiseInTheDark
     }
 }
 
+// Beside bright lamps the projector adds 50 grey of such a picture to the skin: not twice what noise makes of the dark.
+TEST(CheckSequence, ACameraThatEncodesForAScreenIsNotRefusedBesideBrightLamps) {
+    const Scene bright_room = scene(sphere(kCentre, 80), 84, 50);
+    for (const double noise_grey : {0.3, 0.6, 1.0}) {
+        std::vector<GrayImage> frames = encoded(bright_room.frames, noise_grey, 5);
+        const SequenceCheck check = check_sequence(frames, bright_room.stripes);
+        EXPECT_TRUE(check.checked);
+        EXPECT_TRUE(check.problems.empty()) << noise_grey << ": " << said(check);
+        std::swap(frames[0], frames[10]);
+        EXPECT_FALSE(check_sequence(frames, bright_room.stripes).problems.empty()) << noise_grey << ": white swapped";
+    }
+}
+
 // A white drape beside the skin, of which a fault shows nothing: the coarsest bit inverted is there what the next one
 // is.
 TEST(CheckSequence, AFaultThatOnlySkinShowsIsNoticedBesideABrightDrape) {
