@@ -223,6 +223,16 @@ void count(const Judged& judged, bool fault, Sum& sum) {
     }
 }
 
+Sum total(const std::map<std::string, Sum>& sums) {
+    Sum all;
+    for (const auto& [name, s] : sums) {
+        all.draws += s.draws, all.updates += s.updates, all.wrong += s.wrong, all.wrong_and_green += s.wrong_and_green;
+        all.wrong_at_first += s.wrong_at_first, all.wrong_and_green_at_first += s.wrong_and_green_at_first;
+        all.right += s.right, all.right_and_dark += s.right_and_dark, all.right_and_green += s.right_and_green;
+    }
+    return all;
+}
+
 void print(const std::string& name, const Sum& s) {
     fmt::print("{} | {} | {} | {} of {} | {} of {} | {} dark, {} green of {}\n", name, s.draws, s.updates,
                s.wrong_and_green, s.wrong, s.wrong_and_green_at_first, s.wrong_at_first, s.right_and_dark,
@@ -306,19 +316,14 @@ int main(int argc, char** argv) {
                                                              : "DARK: " + last.headline);
             std::fflush(stdout);
         }
-        fmt::print(stderr, "room {} of {}\n", k + 1, rooms);
+        fmt::print(stderr, "room {} of {}; wrong and green so far: {} of {} updates\n", k + 1, rooms,
+                   total(sums).wrong_and_green, total(sums).wrong);
     }
     fmt::print(
         "{} rooms {} to {}: {} refused; {} draws not begun, for it was dark before\n"
         "fault | draws | updates | wrong and green, of wrong | the same in the first half second | right light\n",
         words[0], first, first + rooms - 1, refused, not_begun);
-    Sum all;
-    for (const auto& [name, s] : sums) {
-        print(name, s);
-        all.draws += s.draws, all.updates += s.updates, all.wrong += s.wrong, all.wrong_and_green += s.wrong_and_green;
-        all.wrong_at_first += s.wrong_at_first, all.wrong_and_green_at_first += s.wrong_and_green_at_first;
-        all.right += s.right, all.right_and_dark += s.right_and_dark, all.right_and_green += s.right_and_green;
-    }
-    print("all", all);
+    for (const auto& [name, s] : sums) print(name, s);
+    print("all", total(sums));
     return 0;
 }

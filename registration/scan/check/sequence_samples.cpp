@@ -136,8 +136,10 @@ std::vector<std::size_t> choose_lit(Samples& s) {
         }
     std::vector<std::size_t> lit;
     s.least_change = least_change(low, high, s.dark_noise_grey);
+    // Clipped at nothing and amplified, such noise has longer tails than a normal one.
+    constexpr double kTails = 8;
     const int dark = dark_level(high),
-              least_in_dark = std::max(s.least_change, static_cast<int>(6 * s.dark_noise_grey));
+              least_in_dark = std::max(s.least_change, static_cast<int>(kTails * s.dark_noise_grey));
     for (std::size_t i = 0; i < low.size(); ++i) {
         if (high[i] - low[i] < (high[i] < dark ? least_in_dark : s.least_change)) continue;
         ++s.changing;
