@@ -41,11 +41,13 @@ void LightGate::forget() {
 void LightGate::skin_checked(double off_mm) {
     skin_off_mm_ = std::isnan(off_mm) ? std::numeric_limits<double>::infinity() : off_mm;
     if (skin_off_mm_ > settings_.stop_mm) stopped_ = true;
+    skin_known_at_.reset();
 }
 
 void LightGate::new_match() {
     verified_ = stopped_ = false;
     skin_off_mm_ = 0;
+    skin_known_at_.reset();
     forget();
 }
 
@@ -169,6 +171,7 @@ LightGate::Ruling LightGate::step(Instant at, bool lit, const std::optional<Ligh
     if (weak_ >= settings_.dark_after) weak_at_ = at, unnoticed_mm_ = unnoticed_mm;
     if (lit && verified_ && at - lit_at_ > settings_.verified_for) verified_ = false;
     if (lit && !lit_) lit_since_ = at;
+    if (!skin_known_at_) skin_known_at_ = at;
     lit_ = lit;
     if (lit) lit_at_ = at;
     if (check && lit) take(at, *check);
@@ -377,6 +380,13 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     if (last_->lit_seen < kMostOfIt * last_->lit)
         ruling.details.push_back(
             fmt::format("They see about {:.0f} % of the light.", 10 * std::round(10. * last_->lit_seen / last_->lit)));
+    if (skin_known_at_ && at - *skin_known_at_ >= settings_.skin_checked_for) {
+        constexpr int kStep_min = 5;  // lest the words change every minute
+        const auto minutes = std::chrono::duration_cast<std::chrono::minutes>(at - *skin_known_at_).count();
+        ruling.details.push_back(
+            fmt::format("Skin not checked for {} minutes: markers that slid all together would not show.",
+                        minutes / kStep_min * kStep_min));
+    }
     return ruling;
 }
 

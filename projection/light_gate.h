@@ -26,6 +26,8 @@ struct LightGateSettings {
     double least_brighter = 0.3;   ///< the fainter lines than the skin beside them; what is below is warned of
     Instant fresh = std::chrono::seconds(1);         ///< an older measurement is none
     Instant verified_for = std::chrono::minutes(5);  ///< of light that was interrupted; then a person looks again
+    /// From a match, or a check of the skin, until green light says that it was long ago.
+    Instant skin_checked_for = std::chrono::minutes(10);
 };
 
 /// Whether the plan on the skin may be trusted.
@@ -121,12 +123,13 @@ private:
     LightGateSettings settings_;
     bool verified_ = false, stopped_ = false, lit_ = false;
     int good_ = 0, bad_ = 0;
-    double brighter_ = 0;       ///< `LightCheck::fainter`, mean of the last checks; 0: not known
-    bool faint_ = false;        ///< by that
-    int weak_ = 0;              ///< poses running that a slip may move too far unnoticed
-    double unnoticed_mm_ = 0;   ///< by the last of them
-    double stopped_at_mm_ = 0;  ///< of the light that was last stopped
-    double skin_off_mm_ = 0;    ///< by the last check of the skin; 0: none
+    double brighter_ = 0;                   ///< `LightCheck::fainter`, mean of the last checks; 0: not known
+    bool faint_ = false;                    ///< by that
+    int weak_ = 0;                          ///< poses running that a slip may move too far unnoticed
+    double unnoticed_mm_ = 0;               ///< by the last of them
+    double stopped_at_mm_ = 0;              ///< of the light that was last stopped
+    double skin_off_mm_ = 0;                ///< by the last check of the skin; 0: none
+    std::optional<Instant> skin_known_at_;  ///< the first update after that check, or the match
     std::optional<LightCheck> last_;
     std::vector<Item> items_;
     Instant measured_at_{}, lit_at_{}, told_whole_at_ = Instant::min(), weak_at_ = Instant::min(), lit_since_{};

@@ -173,6 +173,31 @@ TEST(LightGate, GreenSaysHowMuchOfTheLightIsSeen) {
     EXPECT_EQ(ruling.details.back(), "They see about 50 % of the light.");
 }
 
+// The light cannot tell whether all markers slid together: who relies on it is told when that was last looked at.
+TEST(LightGate, GreenSaysThatTheSkinWasCheckedLongAgo) {
+    LightGate gate;
+    Instant now{};
+    gate.new_match();
+    gate.verify(now);
+    const auto long_ago = [&](Instant wait) {
+        for (const Instant end = now + wait; now < end;) gate.step(now += 1s, true, seen_at(0.1));
+        const auto ruling = after(gate, now, 5, seen_at(0.1));
+        EXPECT_EQ(ruling.trust, LightTrust::aligned);
+        for (const std::string& detail : ruling.details)
+            if (detail.find("Skin not checked") != std::string::npos) return detail;
+        return std::string();
+    };
+    EXPECT_EQ(long_ago(9min), "");
+    EXPECT_EQ(long_ago(2min), "Skin not checked for 10 minutes: markers that slid all together would not show.");
+    EXPECT_EQ(long_ago(8min), "Skin not checked for 15 minutes: markers that slid all together would not show.");
+    gate.skin_checked(0.3);
+    EXPECT_EQ(long_ago(9min), "") << "checked";
+    EXPECT_NE(long_ago(2min), "");
+    gate.new_match();
+    gate.verify(now);
+    EXPECT_EQ(long_ago(9min), "") << "matched anew";
+}
+
 TEST(LightGate, ForbidsLightBeforeItIsLit) {
     LightGate gate;
     Instant now{};
