@@ -35,6 +35,13 @@ std::string shortened(std::string text) {
     return text.substr(0, end) + "…";
 }
 
+LinkedValues values_of_light_that_stays(LinkedValues values) {
+    values.trust = LightTrust::dark;
+    values.words = "Light that was put out is still seen on the patient: it does not go out.";
+    values.off_mm = values.sigma_mm = std::nullopt;
+    return values;
+}
+
 }  // namespace
 
 SessionLink::SessionLink(const Case& the_case, const SessionLinkSettings& settings)
@@ -98,17 +105,6 @@ void SessionLink::run(LinkedValues told) {
         }
     }
 }
-
-namespace {
-
-LinkedValues values_of_light_that_stays(LinkedValues values) {
-    values.trust = LightTrust::dark;
-    values.words = "Light that was put out is still seen on the patient: it does not go out.";
-    values.off_mm = values.sigma_mm = std::nullopt;
-    return values;
-}
-
-}  // namespace
 
 /// A link that fails (no memory) must not take the session with it.
 template <class Change>
