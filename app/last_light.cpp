@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "app/session.h"
+#include "projection/light_gate.h"
 
 namespace planlight {
 
@@ -12,13 +13,36 @@ bool Session::LitLight::lights(std::size_t item) const {
            });
 }
 
+bool Session::LitLight::still_seen() const {
+    return (check && check->lit()) || (check_of_seen && check_of_seen->lit());
+}
+
+bool Session::LitLight::gone() const {
+    return check && check->gone() && (!check_of_seen || check_of_seen->gone());
+}
+
+void Session::LitLight::look_anew() {
+    check.reset();
+    check_of_seen.reset();
+}
+
+/// A projector that holds its picture shows none that was ordered later, wherever the head has gone since.
+void Session::note_seen(const LightCheck& check, Instant at) {
+    const LightGateSettings gate;
+    if (!last_light_ || last_light_->drawing != looked_for_ || check.seen < gate.least_seen ||
+        check.seen_share() < gate.least_seen_share || check.light_off_mm() > gate.warn_mm)
+        return;
+    for (const ShownPicture& picture : shown_)
+        if (picture.lit_from <= at) last_light_->rig_from_ct_seen = picture.rig_from_ct;
+}
+
 /// Of other light than before, the former is kept until it was seen to go: an order that never reached the skin is no
 /// light.
 void Session::note_lit(const OverlayStep& overlay) {
     const Instant lit_from = overlay.lit_from + found_delay_;
     if (!last_light_ || last_light_->drawing != looked_for_) {
         if (last_light_ && !former_light_) former_light_ = std::move(last_light_);
-        if (former_light_) former_light_->check.reset();  // other items may be out now
+        if (former_light_) former_light_->look_anew();
         last_light_.emplace();
         last_light_->drawing = looked_for_;
         last_light_->bright_item = bright_item_;
@@ -33,7 +57,7 @@ void Session::note_lit(const OverlayStep& overlay) {
     last_light_->patient_from_ct = registration_->patient_from_ct;
     last_light_->reference = references_;
     last_light_->grey = lit_grey_;
-    last_light_->check.reset();
+    last_light_->look_anew();
 }
 
 void Session::forget_last_light() {
@@ -58,8 +82,8 @@ std::vector<std::size_t> Session::put_out_since(const LitLight& former) const {
 }
 
 /// For `DarknessCheck`: in darkness all of it, beside other light what that has not.
-LightPutOut Session::put_out(const LitLight& former, bool dark) const {
-    LightPutOut light{*former.drawing, former.rig_from_ct, former.grey, former.bright_item, {}};
+LightPutOut Session::put_out(const LitLight& former, bool dark, const RigidTransform& rig_from_ct) const {
+    LightPutOut light{*former.drawing, rig_from_ct, former.grey, former.bright_item, {}};
     if (dark) return light;
     const std::vector<std::size_t> out = put_out_since(former);
     const auto is_out = [&](int item) {
@@ -86,10 +110,9 @@ bool Session::light_stays(const StereoFrame& frame) {
 bool Session::sees_last_light(const StereoFrame& frame, bool dark,
                               const std::function<std::optional<RigidTransform>()>& find_patient) {
     constexpr Instant kEvery = std::chrono::milliseconds(250);
-    const auto still_lit = [&](const std::optional<LitLight>& light) {
-        return light && light->check && light->check->lit();
+    const auto now_lit = [&] {
+        return (former_light_ && former_light_->still_seen()) || (dark && last_light_->still_seen());
     };
-    const auto now_lit = [&] { return still_lit(former_light_) || (dark && still_lit(last_light_)); };
     if (!last_light_ || (!dark && !former_light_)) return false;
     const Instant since = dark ? last_light_->lit_from : changed_at_;
     if (frame.at - frame.exposure / 2 < since + settings_.time_to_dark) return now_lit();
@@ -97,17 +120,22 @@ bool Session::sees_last_light(const StereoFrame& frame, bool dark,
     darkness_looked_at_ = frame.at;
     const auto rig_from_patient = find_patient();
     const auto look_for = [&](LitLight& light) {
-        if (!light.check)
-            light.check = std::make_unique<DarknessCheck>(
-                put_out(light, dark), light.on ? light.on->skin : planned_.skin, light.rig, settings_.check_light);
+        const auto check_at = [&](const RigidTransform& rig_from_ct) {
+            return std::make_unique<DarknessCheck>(put_out(light, dark, rig_from_ct),
+                                                   light.on ? light.on->skin : planned_.skin, light.rig,
+                                                   settings_.check_light);
+        };
+        if (!light.check) light.check = check_at(light.rig_from_ct);
+        if (!light.check_of_seen && light.rig_from_ct_seen) light.check_of_seen = check_at(*light.rig_from_ct_seen);
         std::optional<RigidTransform> rig_from_ct;  // of a patient whose frame is another by now it is not known
         if (rig_from_patient && light.reference == references_) rig_from_ct = *rig_from_patient * light.patient_from_ct;
         light.check->look(frame, rig_from_ct);
+        if (light.check_of_seen) light.check_of_seen->look(frame, rig_from_ct);
     };
     if (dark) look_for(*last_light_);
     if (former_light_) {
         look_for(*former_light_);
-        if (former_light_->check->gone()) former_light_.reset();
+        if (former_light_->gone()) former_light_.reset();
     }
     return now_lit();
 }

@@ -239,10 +239,11 @@ private:
     void note_shown(const OverlayStep& overlay);
     struct LitLight;
     std::vector<std::size_t> put_out_since(const LitLight& former) const;
-    LightPutOut put_out(const LitLight& former, bool dark) const;
+    LightPutOut put_out(const LitLight& former, bool dark, const RigidTransform& rig_from_ct) const;
     bool sees_last_light(const StereoFrame& frame, bool dark,
                          const std::function<std::optional<RigidTransform>()>& find_patient);
     void note_lit(const OverlayStep& overlay);
+    void note_seen(const LightCheck& check, Instant at);
     void forget_last_light();
     void correct_delay(std::vector<LightCause>& causes);
 
@@ -281,8 +282,15 @@ private:
         std::shared_ptr<const CaseDrawing> on;  ///< whose skin it is drawn on; empty: `planned_`
         RigCalibration rig;
         double grey = 0;  ///< `light_grey`; 0: it was not looked at
-        std::unique_ptr<DarknessCheck> check;
+        /// Where the head stood for the picture that was last seen in its place: the one that stays where none after
+        /// it reached the skin. Empty: none was seen yet.
+        std::optional<RigidTransform> rig_from_ct_seen;
+        /// For the last picture ordered, and for the last one seen; made when they are first looked for.
+        std::unique_ptr<DarknessCheck> check, check_of_seen;
         bool lights(std::size_t item) const;  ///< in full
+        bool still_seen() const;              ///< by the last look
+        bool gone() const;
+        void look_anew();  ///< other light is out now, or it lies elsewhere
     };
     /// What was ordered last, also through another match; and what was lit before that, until it was seen to go. Empty:
     /// none, or a projector's stripes were seen since.

@@ -38,6 +38,7 @@ Session::Update Session::make_update() {
     if (update.light) {
         overlay_->set_brightness(brightness_.look(*update.light));
         if (update.light->seen > 0) lit_grey_ = light_grey(*update.light);
+        note_seen(*update.light, update.frame.at);
     }
     watch_light(update);
     update.times.check_s = elapsed_s(checking_began);

@@ -91,6 +91,23 @@ TEST_P(LastLight, IsSeenOnAHeadThatMovesAwayUnderIt) {
     EXPECT_GT(most_mm, 4) << "farther than strokes are looked for to their sides";
 }
 
+/// Pictures are ordered on for the head where it goes, and none of them reaches the skin: what stays is an older one.
+TEST_P(LastLight, IsSeenWhereTheHeadWentOnBeforeItWasPutOut) {
+    start();
+    room->set_motion({15, room->clock().now()});
+    follow(8);
+    room->freeze_projector();
+    const RigidTransform frozen = room->true_rig_from_ct(room->clock().now());
+    for (int i = 0; i < 40 && moved_mm(frozen) < 5; ++i) session->update();
+    ASSERT_GT(moved_mm(frozen), 4.5) << "farther than strokes are looked for to their sides";
+    session->go_dark();
+    looks_that_see_it(5);
+    EXPECT_EQ(looks_that_see_it(4), 4);
+    room->cover_projector(true);
+    looks_that_see_it(2);
+    EXPECT_EQ(looks_that_see_it(2), 0) << "its lens was covered";
+}
+
 /// Register, pressed once more on the same scan, changes nothing of what the projector holds.
 TEST_P(LastLight, IsSeenThroughAnotherMatch) {
     start();
