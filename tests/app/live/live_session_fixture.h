@@ -39,7 +39,8 @@ private:
     std::atomic<bool>&held_, &waits_, &lost_;
 };
 
-/// Counts the updates since a landmark was lit, and how often the gate forbade light before there was any.
+/// Counts the updates since a landmark was lit, and how often the gate forbade light before there was any; hears
+/// whether light stays.
 class CountsUpdates final : public SessionObserver {
 public:
     void asked(SessionCall call, const std::vector<PointPair>&, int) noexcept override {
@@ -50,7 +51,9 @@ public:
         if (call == GateCall::forbids) ++forbidden;
         if (call == GateCall::other_light) ++other_light;
     }
+    void light_stays(bool stays) noexcept override { light_stays_now = stays; }
     std::atomic<int> since{0}, forbidden{0}, other_light{0};
+    std::atomic<bool> light_stays_now{false};
 };
 
 /// A session in the simulated room, from its first moment.

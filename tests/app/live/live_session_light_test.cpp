@@ -249,8 +249,10 @@ TEST_F(LiveSessionWithAFrozenProjector, DarkSaysThatTheLightDoesNotGoOut) {
         wait_for(*session, "the light", [](const OperatorModel& m) { return m.status.kind == StatusKind::refused; });
     EXPECT_TRUE(says(lit, "does not go out")) << lit.status.headline;
     EXPECT_TRUE(says(lit, "cover the projector's lens")) << "what to do now stands there";
+    EXPECT_TRUE(counts.light_stays_now) << "others are told, too";
     EXPECT_EQ(session->post(OperatorAction::track), "") << "the match is kept";
     wait_for(*session, "light", [](const OperatorModel& m) { return !says(m, "does not go out"); });
+    EXPECT_FALSE(counts.light_stays_now);
 }
 
 // All markers slipped together: they agree with each other, and the light with them; only the skin tells. From then on
