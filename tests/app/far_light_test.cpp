@@ -87,11 +87,7 @@ TEST_F(FarLight, OfAPlanGoesDark) {
 }
 
 TEST_F(FarLight, OfOneHoleGoesDark) {
-    Plan plan;
-    Borehole hole = example().boreholes.front();
-    hole.diameter_mm = 2;
-    plan.boreholes = {hole};
-    expect_dark("one hole of 2 mm", plan);
+    expect_dark("one hole of 2 mm", one_hole_of_2_mm());
 }
 
 TEST_F(FarLight, OfThePlateOfScrewsGoesDark) {

@@ -87,6 +87,12 @@ protected:
     /// Near the middle of the example's plan, on the skin.
     static Eigen::Vector3d middle() { return case_->plan.boreholes.front().position_in_ct; }
 
+    static Plan one_hole_of_2_mm() {
+        Plan plan;
+        plan.boreholes = {case_->plan.boreholes.front()};
+        plan.boreholes.front().diameter_mm = 2;
+        return plan;
+    }
     static Plan biopsy_straight_in() {
         Plan plan;
         Trajectory way;

@@ -62,11 +62,7 @@ TEST_F(StrangeLight, OneShortLineIsToldByItsMarks) {
 }
 
 TEST_F(StrangeLight, OneSmallCircle) {
-    Plan plan;
-    Borehole hole = example().boreholes.front();
-    hole.diameter_mm = 2;
-    plan.boreholes = {hole};
-    expect_honest("one hole of 2 mm", plan);
+    expect_honest("one hole of 2 mm", one_hole_of_2_mm());
     EXPECT_TRUE(green_);
 }
 
