@@ -73,12 +73,13 @@ SiteSettings read_site_settings() {
     const JsonValue root(json, file);
     check_format(root, "planlight config", 1, file);
     root.has_only({"format", "version", "units", "surgeon_side", "monitors", "language", "theme", "openigtlink",
-                   "operator_name", "paper", "dicom"});
+                   "operator_name", "paper", "check_skin_every_min", "dicom"});
     if (const auto units = root.find("units")) site.units = one_of(*units, kUnits);
     if (const auto side = root.find("surgeon_side")) site.surgeon_side = one_of(*side, kSides);
     if (const auto language = root.find("language")) site.language = language->text();
     if (const auto theme = root.find("theme")) site.theme = one_of(*theme, kThemes);
     if (const auto paper = root.find("paper")) site.paper = one_of(*paper, kPapers);
+    if (const auto every = root.find("check_skin_every_min")) site.check_skin_every_min = every->number(1, 60);
     if (const auto name = root.find("operator_name")) site.operator_name = name->text();
     if (const auto monitors = root.find("monitors")) {
         monitors->has_only({"operator", "projector"});

@@ -12,7 +12,8 @@ namespace planlight {
 /// What a site sets once, in planlight/config.json under $XDG_CONFIG_HOME (~/.config where that is not set):
 /// {"format": "planlight config", "version": 1, "units": "mm" | "cm" | "inch", "surgeon_side": "feet" | "head" | "left"
 /// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"}, "language": "de", "theme": "dark" |
-/// "bright", "paper": "A4" | "Letter", "openigtlink": {"names": true}, "operator_name": "Dr. A. Meier", "dicom":
+/// "bright", "paper": "A4" | "Letter", "check_skin_every_min": 5, "openigtlink": {"names": true}, "operator_name": "Dr.
+/// A. Meier", "dicom":
 /// {"own_title": "PLANLIGHT", "host": "pacs", "port": 104, "title": "PACS"}}. Every name but the first two may be
 /// missing.
 struct SiteSettings {
@@ -24,6 +25,7 @@ struct SiteSettings {
     std::string language = "en";                      ///< of the operator's windows (app/words/README.md)
     std::string theme = "dark";                       ///< of the operator's windows
     std::string paper = "A4";                         ///< size of the sheets that PDF files are made of
+    double check_skin_every_min = 0;                  ///< by a session itself, 1 to 60; 0: only when asked
     std::string operator_name;                        ///< who operates; empty: the account's. An option overrides it
     std::string operator_monitor, projector_monitor;  ///< names; empty: not set. An option of a command overrides them
     bool openigtlink_names = false;   ///< `session --igtl` says names of patient, case and plan to whoever listens

@@ -71,6 +71,8 @@ public:
     /// by how much): beyond `stop_mm` the light stops, beyond `warn_mm` it is not trusted until the next check or
     /// match.
     void skin_checked(double off_mm);
+    /// Since when it is known where the skin lies: the first update after the match, or after such a check.
+    std::optional<Instant> skin_known_at() const { return skin_known_at_; }
     void new_match();  ///< or one that was found to hold still: nothing is verified or measured any more
     /// Light is asked for again; after a stop it must be verified anew, for what a person saw then was no longer true.
     void restart();

@@ -92,6 +92,8 @@ LiveOptions live_options(const SessionOptions& options, const SiteSettings& site
     live.screenshots = options.screenshots;
     live.keep_matches_in = matches_folder(options);
     live.recorded = listeners.recorded.of_patient();
+    if (const double every = options.check_skin_every_min.value_or(site.check_skin_every_min); every > 0)
+        live.skin_checks.every = from_seconds(60 * every);
     if (recorder) live.trouble = [recorder] { return recorder->trouble(); };
     return live;
 }
@@ -160,6 +162,9 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
 }
 
 int run_session(const SessionOptions& options) {
+    if (options.check_skin_every_min.value_or(0) > 0 && *options.check_skin_every_min < 1)
+        throw Error(ExitCode::usage, "--check-skin-every is shorter than a minute",
+                    "Give 1 to 60 minutes, or 0 for checks only when they are asked for.");
     hand_large_blocks_back();
     const SiteSettings site = site_with(options.surgeon);
     SessionWindow window(options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor,
@@ -213,6 +218,10 @@ Run add_session(CLI::App& app) {
     sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
     sub->add_option("--operator-name", o.operator_name,
                     "Who operates, for the recording and its report (default: the site's, else the account's name)");
+    sub->add_option("--check-skin-every", o.check_skin_every_min,
+                    "While the patient is followed, minutes (1 to 60) from one check of the skin to the next, each a "
+                    "second of stripes that is announced first (0: only when asked; default: the site's, else 0)")
+        ->check(CLI::Range(0.0, 60.0));
     surgeon_option(sub, o.surgeon);
     language_option(sub, o.language);
     theme_option(sub, o.theme);

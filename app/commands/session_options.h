@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/commands/command_line.h"
@@ -32,7 +33,9 @@ struct SessionOptions {
     double end_after_s = 0;  ///< wall time; 0 = until the window is closed
     double idle_first_s = 0;
     Path screenshots;
-    std::string operator_name;   ///< who operates; empty: as the site says, else the account
+    std::string operator_name;  ///< who operates; empty: as the site says, else the account
+    /// So often the skin is checked by the session itself; 0: when it is asked for; empty: as the site says.
+    std::optional<double> check_skin_every_min;
     double light_delay_ms = -1;  ///< of the projector window; below 0: the default, or what `projector_file` says
     Path projector_file;         ///< projector.json of the monitor; empty: none
 };

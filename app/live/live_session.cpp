@@ -18,7 +18,7 @@ constexpr std::array kStatusKinds{"ready", "scanning", "matching", "aligned", "c
 
 LiveSession::LiveSession(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
                          std::filesystem::path keep_matches_in, SessionObserver* observer,
-                         std::optional<ResumeOffer> offer)
+                         std::optional<ResumeOffer> offer, const SkinCheckScheduleSettings& checks)
     : case_(the_case),
       drawing_(drawing),
       keep_matches_in_(std::move(keep_matches_in)),
@@ -26,6 +26,7 @@ LiveSession::LiveSession(MakeRoom make_room, const Case& the_case, const CaseDra
       blank_(model_of_case(the_case, drawing)),
       model_(blank_),
       gate_(observer),
+      checks_(checks),
       offer_(std::move(offer)) {
     enter(state_, blank_, model_, scan_there_);
     said();

@@ -16,6 +16,7 @@
 #include "app/live/observed_gate.h"
 #include "app/live/room.h"
 #include "app/live/session_states.h"
+#include "app/live/skin_check_schedule.h"
 #include "app/recording/resume_offer.h"
 #include "app/session.h"
 #include "app/update_latency.h"
@@ -35,10 +36,11 @@ enum class AskedBy { person, program, lost_projector };
 class LiveSession {
 public:
     /// `keep_matches_in`: every match and its scan in a folder of its own there; empty: not kept. `observer` (null:
-    /// nobody) is told of all that happens. `offer`: a match of an earlier session that it may go on with.
+    /// nobody) is told of all that happens. `offer`: a match of an earlier session that it may go on with. `checks`:
+    /// when the skin is checked by itself.
     LiveSession(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
                 std::filesystem::path keep_matches_in, SessionObserver* observer = nullptr,
-                std::optional<ResumeOffer> offer = {});
+                std::optional<ResumeOffer> offer = {}, const SkinCheckScheduleSettings& checks = {});
     ~LiveSession();  ///< waits for its thread
 
     /// There is no light from now on, and the thread ends as soon as it can; it is not waited for.
@@ -113,6 +115,8 @@ private:
     bool look_first() const { return looked_ != looks_asked_; }
     void look_again(Session& session);
     void check_skin(Session& session);
+    void check_skin_when_due(const Session& session, Room& room, const Session::Update& update,
+                             LightGate::Ruling& ruling);
     void give_up_scan();
     bool looked_at(Instant now) const;
     void show_measured(const Session::Update& update, OperatorModel& m) const;
@@ -174,6 +178,8 @@ private:
     std::uint64_t darks_answered_ = 0;  ///< of these, how many the thread has come to; until then the banner says DARK
     std::uint64_t permitted_ = 0;       ///< `darks_` when the light of now was asked for; it is dark where they differ
     ObservedGate gate_;                 ///< of the session's thread
+    SkinCheckSchedule checks_;          ///< of the session's thread
+    std::string skin_words_;            ///< of the last check, as they stand in the evidence
     Instant seen_at_{};                 ///< of the last frame, on the room's clock
     int landmark_ = -1;                 ///< that is lit for a person to look at; -1: the plan is lit
     int landmarks_to_look_at_ = 0;

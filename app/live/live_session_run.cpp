@@ -276,6 +276,7 @@ void LiveSession::begin_anew(Session& session, Room& room) {
 void LiveSession::begin_to_follow(Session& session, Room& room) {
     if (look_first()) room.let_patient_move(false);  // was asked to lie still
     look_again(session);
+    checks_.restart();
     gate_.restart();
     end_verification(session);
     following_ = true;

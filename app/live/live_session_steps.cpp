@@ -223,6 +223,7 @@ void LiveSession::give_up_scan() {
 /// The short scan, and what it means for the light.
 void LiveSession::check_skin(Session& session) {
     landmark_lit_from_.reset();  // stripes take its place
+    checks_.began(seen_at_);
     const SkinCheck check = session.check_skin([&](int done, int of) {
         if (!light_permitted()) throw CheckFailedError("The check was ended by DARK", "Press Track to go on.");
         set_progress(view_of(SessionState::checking_skin).headline, static_cast<double>(done) / std::max(1, of));
@@ -239,7 +240,25 @@ void LiveSession::check_skin(Session& session) {
     }
     if (check.elsewhere || (check.known && check.off_mm > LightGateSettings{}.warn_mm)) give_up_scan();
     happened(SessionHappening::skin_checked);
-    change_model([&](OperatorModel& m) { m.evidence.insert(m.evidence.begin(), words); });
+    change_model([&](OperatorModel& m) {
+        if (!m.evidence.empty() && m.evidence.front() == skin_words_) m.evidence.erase(m.evidence.begin());
+        m.evidence.insert(m.evidence.begin(), words);
+    });
+    skin_words_ = words;
+}
+
+/// Where it was wished for: announced, and then as if it had been pressed.
+void LiveSession::check_skin_when_due(const Session& session, Room& room, const Session::Update& update,
+                                      LightGate::Ruling& ruling) {
+    std::vector<Eigen::Vector3d> markers;
+    if (update.pose.rig_from_patient)
+        for (const auto& marker : session.tracker().markers())
+            markers.push_back(*update.pose.rig_from_patient * marker.centre_in_patient);
+    const bool lit = update.overlay.lit && gate_.verified() && landmark_ < 0;
+    const SkinCheckSchedule::Turn turn = checks_.step(seen_at_, gate_.skin_known_at().value_or(seen_at_), lit, markers);
+    room.let_patient_move(turn.notice.empty());  // asked to lie still
+    if (!turn.notice.empty()) ruling.details.insert(ruling.details.begin(), turn.notice);
+    if (turn.check) post(OperatorAction::check_skin, AskedBy::program, {}, darks_now());
 }
 
 void LiveSession::follow(Session& session, Room& room) {
@@ -258,6 +277,7 @@ void LiveSession::follow(Session& session, Room& room) {
         return;
     }
     show_verification(update, ruling);
+    check_skin_when_due(session, room, update, ruling);
     play_fault(ruling, room);
     projecting_ = update.overlay.lit;
     show_update(session, room, update, ruling);

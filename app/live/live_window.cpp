@@ -285,7 +285,7 @@ int run_live_simulated(SessionWindow& screen, MakeRoom make_room, const Case& th
         projector = std::make_unique<ProjectorKeeper>(monitor, settings);
     }
     LiveSession session(std::move(make_room), the_case, drawing, options.keep_matches_in, options.observer,
-                        options.resume);
+                        options.resume, options.skin_checks);
     if (projector) projector->set_permission([&session] { return session.light_permitted(); });
     std::unique_ptr<LightKeeper> light;  // dark and gone before the session is
     if (projector) light = std::make_unique<LightKeeper>(*projector, session);
@@ -305,7 +305,7 @@ int run_live(SessionWindow& screen, const MakeRoomWith& make_room, const Case& t
         projector = std::make_unique<ProjectorKeeper>(options.projector_monitor, keeper_settings(options));
     }
     LiveSession session([&](const RoomProgress& progress) { return make_room(projector.get(), progress); }, the_case,
-                        drawing, options.keep_matches_in, options.observer, options.resume);
+                        drawing, options.keep_matches_in, options.observer, options.resume, options.skin_checks);
     if (projector) projector->set_permission([&session] { return session.light_permitted(); });
     WindowMeter meter;
     const int code = run_windows(window, session, projector.get(), options,

@@ -36,6 +36,7 @@ struct LiveOptions {
     std::optional<ResumeOffer> resume;      ///< a match of an earlier session to go on with
     SessionObserver* observer = nullptr;    ///< told of all that happens; null: nobody
     PatientRecorded recorded = PatientRecorded::no;  ///< said before the first press, and on the page of evidence
+    SkinCheckScheduleSettings skin_checks;           ///< by the session itself
     std::function<std::string()> trouble;            ///< of the recording, to be said beside all else; may be empty
     std::filesystem::path screenshots;  ///< folder for a picture of the operator window a step; empty = none
 };

@@ -20,6 +20,7 @@ public:
         tell(GateCall::verify, at);
     }
     bool verified() const { return gate_.verified(); }
+    std::optional<Instant> skin_known_at() const { return gate_.skin_known_at(); }
     void skin_checked(double off_mm) {
         gate_.skin_checked(off_mm);
         tell(GateCall::skin_checked, {}, off_mm);

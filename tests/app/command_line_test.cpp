@@ -202,6 +202,8 @@ TEST_F(CommandLineTest, SettingsThatAreNoneAreRefusedByName) {
     expect_refused(run("board"), 3, "operater");
     write_settings(R"({"format": "planlight config", "version": 1, "paper": "A5"})");
     expect_refused(run("board"), 3, "\"Letter\"");
+    write_settings(R"({"format": "planlight config", "version": 1, "check_skin_every_min": 0.2})");
+    expect_refused(run("board"), 3, "check_skin_every_min");
     write_settings("{");
     expect_refused(run("board"), 4, "config.json");
 }
