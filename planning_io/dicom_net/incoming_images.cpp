@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "planning_io/files/held_end_signals.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
@@ -52,7 +53,7 @@ bool IncomingImages::take(const std::string& uid, std::size_t bytes) {
     std::size_t count = 0;
     {
         const std::lock_guard lock(mutex_);
-        if (fault || size < bytes) {
+        if (fault || size < bytes || HeldEndSignals::one_waits()) {
             disk_failed_ = true;
             return false;
         }

@@ -13,6 +13,7 @@
 
 #include "planning_io/files/check_exists.h"
 #include "planning_io/files/disk_refusal.h"
+#include "planning_io/files/held_end_signals.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -75,6 +76,12 @@ void check_owner_only(const fs::path& path, const fs::path& file) {
                     "Name a folder on a disk that knows permissions.");
 }
 
+/// Within a folder that is being filled: the rest is not written, and the signal ends the program once that is removed.
+void stop_where_a_signal_waits(const fs::path& file) {
+    if (HeldEndSignals::one_waits())
+        throw DiskError(file, "was not written: the program was told to end", "Start anew.");
+}
+
 struct RemoveUnlessKept {
     fs::path path;
     bool kept = false;
@@ -119,6 +126,8 @@ void write_safely(const fs::path& file_or_link, const std::function<void(std::os
         return write_into(file, file, write);  // a pipe or a device is written to, never replaced
     }
     const bool owner_only = readable_by == ReadableBy::owner;
+    const HeldEndSignals until_nothing_is_left;
+    stop_where_a_signal_waits(file);
     RemoveUnlessKept temporary{make_temporary_beside(file, false, owner_only ? 0600 : 0666)};
     if (owner_only) check_owner_only(temporary.path, file);
     write_into(temporary.path, file, write);
@@ -152,6 +161,7 @@ void write_folder_safely(const fs::path& folder, bool replace, const std::functi
     if (there && !fs::is_directory(target)) throw InputError(target, "is a file, not a folder", "Name another folder.");
     if (there && !empty && !replace)
         throw InputError(target, "exists already and is not empty", "Name a new folder, or empty this one.");
+    const HeldEndSignals until_nothing_is_left;
     RemoveFolder temporary{make_temporary_beside(target, true)};
     fill(temporary.path);
     sync(temporary.path, target);

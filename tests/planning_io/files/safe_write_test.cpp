@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <functional>
 
@@ -75,6 +76,54 @@ TEST(SafeWrite, AFileForItsOwnerIsSoFromItsFirstByteOnAlsoInPlaceOfOneForAll) {
         ReadableBy::owner);
     EXPECT_EQ(read_whole(file), "a face");
     EXPECT_EQ(perms(file), fs::perms(0600));
+}
+
+// Ctrl-C, a shutdown, a closed terminal: what is half written may be a patient's face.
+TEST(SafeWrite, ASignalThatEndsTheProgramLeavesNothingHalfWritten) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        const test::TemporaryFolder folder;
+        EXPECT_EXIT(write_folder_safely(folder.path() / "case", false,
+                                        [&](const fs::path& into) {
+                                            write_safely(into / "skin", "a face");
+                                            std::raise(signal);
+                                            write_safely(into / "more", "of it");
+                                            std::_Exit(9);  // is not come to
+                                        }),
+                    testing::KilledBySignal(signal), "");
+        EXPECT_EQ(files_in(folder.path()), 0U) << signal;
+        EXPECT_EXIT(write_safely(folder.path() / "page",
+                                 [&](std::ostream& out) {
+                                     out << "a face" << std::flush;
+                                     std::raise(signal);
+                                 }),
+                    testing::KilledBySignal(signal), "");
+        EXPECT_EQ(files_in(folder.path()), 1U) << "whole: it was nearly done";
+        EXPECT_EQ(read_whole(folder.path() / "page"), "a face");
+    }
+}
+
+TEST(SafeWrite, ASecondSignalIsNotWaitedWith) {
+    const test::TemporaryFolder folder;
+    EXPECT_EXIT(write_folder_safely(folder.path() / "case", false,
+                                    [&](const fs::path&) {
+                                        std::raise(SIGINT);
+                                        std::raise(SIGINT);
+                                        std::_Exit(9);
+                                    }),
+                testing::KilledBySignal(SIGINT), "");
+}
+
+TEST(SafeWrite, ASignalThatTheProgramHandlesItselfIsItsOwn) {
+    const test::TemporaryFolder folder;
+    static volatile std::sig_atomic_t handled = 0;
+    const auto before = std::signal(SIGTERM, [](int) { handled = handled + 1; });
+    write_folder_safely(folder.path() / "case", false, [&](const fs::path& into) {
+        std::raise(SIGTERM);
+        EXPECT_EQ(handled, 1) << "at once";
+        write_safely(into / "skin", "whole");
+    });
+    std::signal(SIGTERM, before);
+    EXPECT_EQ(read_whole(folder.path() / "case" / "skin"), "whole");
 }
 
 TEST(KeepToOwner, AFolderAndAllInItAreTheirOwnersWhateverTheUmaskMadeOfThem) {
