@@ -115,8 +115,8 @@ private:
     bool look_first() const { return looked_ != looks_asked_; }
     void look_again(Session& session);
     void check_skin(Session& session);
-    void check_skin_when_due(const Session& session, Room& room, const Session::Update& update,
-                             LightGate::Ruling& ruling);
+    std::string check_skin_when_due(const Session& session, Room& room, const Session::Update& update);
+    void say_of_skin(const std::string& words, OperatorModel& m);
     void give_up_scan();
     bool looked_at(Instant now) const;
     void show_measured(const Session::Update& update, OperatorModel& m) const;
@@ -128,7 +128,7 @@ private:
     std::string keep(const RegistrationResult& found, const PointCloud& cloud, const std::vector<PointPair>& landmarks);
     void follow(Session& session, Room& room);
     void show_update(const Session& session, const Room& room, const Session::Update& update,
-                     const LightGate::Ruling& ruling);
+                     const LightGate::Ruling& ruling, const std::string& notice);
     void note_latency(const Session::Update& update, OperatorModel& m);
     std::optional<double> lit_per_s(const Session::Update& update);
     void play_fault(const LightGate::Ruling& ruling, Room& room);
@@ -179,6 +179,7 @@ private:
     std::uint64_t permitted_ = 0;       ///< `darks_` when the light of now was asked for; it is dark where they differ
     ObservedGate gate_;                 ///< of the session's thread
     SkinCheckSchedule checks_;          ///< of the session's thread
+    bool check_was_due_ = false;        ///< and not asked for by a person
     std::string skin_words_;            ///< of the last check, as they stand in the evidence
     Instant seen_at_{};                 ///< of the last frame, on the room's clock
     int landmark_ = -1;                 ///< that is lit for a person to look at; -1: the plan is lit

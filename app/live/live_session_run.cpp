@@ -132,13 +132,14 @@ void LiveSession::device_lost(const Press& press, Session& session, const Device
     session.go_dark();
     view_.failed(lost.what());
     landmark_lit_from_.reset();
+    checks_.restart();
+    check_was_due_ = false;
     if (following_) gate_.other_light(seen_at_);  // what was measured was before
     happened(following_ ? SessionHappening::skin_checked : SessionHappening::failed, [&](OperatorModel& m) {
         const auto of_check = [](const Press& p) { return p.action == OperatorAction::check_skin; };
         // The light comes back, and must not look as if it was checked: one that still waits is given up, too.
         if (of_check(press) || std::ranges::any_of(presses_, of_check))
-            m.evidence.insert(m.evidence.begin(),
-                              std::string("The skin was not checked: ") + lost.what() + "; check it again.");
+            say_of_skin(std::string("The skin was not checked: ") + lost.what() + "; check it again.", m);
         m.status = {StatusKind::dark,
                     std::string("Dark: ") + lost.what() + ".",
                     {lost.remedy, following_ ? "The light comes back by itself." : "Press the button again."}};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "app/case_model.h"
 #include "app/live/clickable_scan.h"
@@ -224,10 +225,17 @@ void LiveSession::give_up_scan() {
 void LiveSession::check_skin(Session& session) {
     landmark_lit_from_.reset();  // stripes take its place
     checks_.began(seen_at_);
-    const SkinCheck check = session.check_skin([&](int done, int of) {
-        if (!light_permitted()) throw CheckFailedError("The check was ended by DARK", "Press Track to go on.");
-        set_progress(view_of(SessionState::checking_skin).headline, static_cast<double>(done) / std::max(1, of));
-    });
+    const bool was_due = std::exchange(check_was_due_, false);
+    SkinCheck check;
+    try {
+        check = session.check_skin([&](int done, int of) {
+            if (!light_permitted()) throw CheckFailedError("The check was ended by DARK", "Press Track to go on.");
+            set_progress(view_of(SessionState::checking_skin).headline, static_cast<double>(done) / std::max(1, of));
+        });
+    } catch (const CheckFailedError& none) {
+        if (!was_due || !light_permitted()) throw;
+        check.why_not = none.what();  // the light goes on: nobody has asked
+    }
     gate_.other_light(seen_at_);  // the plan's is lit anew
     std::string words = "The skin was not checked: " + check.why_not + "; check it again.";
     if (check.elsewhere) {
@@ -240,16 +248,18 @@ void LiveSession::check_skin(Session& session) {
     }
     if (check.elsewhere || (check.known && check.off_mm > LightGateSettings{}.warn_mm)) give_up_scan();
     happened(SessionHappening::skin_checked);
-    change_model([&](OperatorModel& m) {
-        if (!m.evidence.empty() && m.evidence.front() == skin_words_) m.evidence.erase(m.evidence.begin());
-        m.evidence.insert(m.evidence.begin(), words);
-    });
+    change_model([&](OperatorModel& m) { say_of_skin(words, m); });
+}
+
+/// First of the evidence, in place of what the check before left there.
+void LiveSession::say_of_skin(const std::string& words, OperatorModel& m) {
+    if (!m.evidence.empty() && m.evidence.front() == skin_words_) m.evidence.erase(m.evidence.begin());
+    m.evidence.insert(m.evidence.begin(), words);
     skin_words_ = words;
 }
 
-/// Where it was wished for: announced, and then as if it had been pressed.
-void LiveSession::check_skin_when_due(const Session& session, Room& room, const Session::Update& update,
-                                      LightGate::Ruling& ruling) {
+/// Where it was wished for: announced, which is returned, and then as if it had been pressed.
+std::string LiveSession::check_skin_when_due(const Session& session, Room& room, const Session::Update& update) {
     std::vector<Eigen::Vector3d> markers;
     if (update.pose.rig_from_patient)
         for (const auto& marker : session.tracker().markers())
@@ -257,8 +267,8 @@ void LiveSession::check_skin_when_due(const Session& session, Room& room, const 
     const bool lit = update.overlay.lit && gate_.verified() && landmark_ < 0;
     const SkinCheckSchedule::Turn turn = checks_.step(seen_at_, gate_.skin_known_at().value_or(seen_at_), lit, markers);
     room.let_patient_move(turn.notice.empty());  // asked to lie still
-    if (!turn.notice.empty()) ruling.details.insert(ruling.details.begin(), turn.notice);
-    if (turn.check) post(OperatorAction::check_skin, AskedBy::program, {}, darks_now());
+    if (turn.check) check_was_due_ = post(OperatorAction::check_skin, AskedBy::program, {}, permitted_).empty();
+    return turn.notice;
 }
 
 void LiveSession::follow(Session& session, Room& room) {
@@ -277,10 +287,10 @@ void LiveSession::follow(Session& session, Room& room) {
         return;
     }
     show_verification(update, ruling);
-    check_skin_when_due(session, room, update, ruling);
+    const std::string notice = check_skin_when_due(session, room, update);
     play_fault(ruling, room);
     projecting_ = update.overlay.lit;
-    show_update(session, room, update, ruling);
+    show_update(session, room, update, ruling, notice);
 }
 
 void LiveSession::play_fault(const LightGate::Ruling& ruling, Room& room) {
@@ -348,7 +358,7 @@ void LiveSession::show_measured(const Session::Update& update, OperatorModel& m)
 }
 
 void LiveSession::show_update(const Session& session, const Room& room, const Session::Update& update,
-                              const LightGate::Ruling& ruling) {
+                              const LightGate::Ruling& ruling, const std::string& notice) {
     const auto light = room.true_light(session.lit_drawing(), update.overlay);
     Figures figures;
     figures.updates_per_s = lit_per_s(update);
@@ -364,7 +374,8 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
     if (landmark_ < 0 && !ruling.of_other) figures.overlay_error_mm = ruling.off_mm;
     view_.found(update.frame.at, found_markers(session.tracker().seen_left()),
                 found_markers(session.tracker().seen_right()));
-    const Status status = status_of(session, update, ruling, !drawing_.settings.card.empty() && landmark_ < 0);
+    Status status = status_of(session, update, ruling, !drawing_.settings.card.empty() && landmark_ < 0);
+    if (!notice.empty()) status.details.insert(status.details.begin(), notice);
     bool told = false;
     change_model([&](OperatorModel& m) {
         note_latency(update, m);

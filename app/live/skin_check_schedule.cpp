@@ -14,6 +14,16 @@ void SkinCheckSchedule::restart() {
 void SkinCheckSchedule::began(Instant at) {
     restart();
     began_at_ = at;
+    ++unanswered_;
+}
+
+bool SkinCheckSchedule::due(Instant at, Instant known_at) {
+    if (began_at_ && known_at > *began_at_) began_at_.reset(), unanswered_ = 0;
+    if (at - known_at < *settings_.every) return false;
+    if (!began_at_) return true;
+    constexpr int kMostDoublings = 10;
+    const Instant longer = settings_.again_after * (1 << std::clamp(unanswered_ - 1, 0, kMostDoublings));
+    return at - *began_at_ >= std::max(settings_.again_after, std::min(longer, *settings_.every));
 }
 
 /// Whether it has, for as long as is asked. A marker fewer or more is a reference of another scan: seen anew.
@@ -34,9 +44,10 @@ bool SkinCheckSchedule::still(Instant at, const std::vector<Eigen::Vector3d>& ma
 SkinCheckSchedule::Turn SkinCheckSchedule::step(Instant at, Instant known_at, bool lit,
                                                 const std::vector<Eigen::Vector3d>& markers) {
     if (!settings_.every) return {};
+    if (last_at_ && at - *last_at_ > settings_.gap) restart();
+    last_at_ = at;
     const bool lies_still = still(at, markers);
-    const bool due = at - known_at >= *settings_.every && (!began_at_ || at - *began_at_ >= settings_.again_after);
-    if (!due || !lit) {
+    if (!due(at, known_at) || !lit) {
         announced_at_.reset();
         return {};
     }
@@ -45,6 +56,10 @@ SkinCheckSchedule::Turn SkinCheckSchedule::step(Instant at, Instant known_at, bo
     if (left > Instant{}) {
         const auto seconds = std::chrono::ceil<std::chrono::seconds>(left).count();
         return {false, fmt::format("The skin is checked in {} s: keep the patient still.", seconds)};
+    }
+    if (!lies_still && -left > settings_.waits_at_most) {
+        began(at);
+        return {};
     }
     return {lies_still, "The skin is checked as soon as the patient lies still."};
 }

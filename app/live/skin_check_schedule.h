@@ -15,7 +15,10 @@ struct SkinCheckScheduleSettings {
     Instant announced_for = std::chrono::seconds(5);  ///< before the light makes way for stripes
     Instant still_for = std::chrono::seconds(2);      ///< and so long the patient has lain still by then
     double still_mm = 0.3;                            ///< no marker moved more meanwhile
-    Instant again_after = std::chrono::seconds(20);   ///< a check without an answer
+    /// From a check without an answer to the next; twice as long after each more, at most `every`.
+    Instant again_after = std::chrono::seconds(20);
+    Instant waits_at_most = std::chrono::seconds(60);  ///< for rest; then that was a check without an answer
+    Instant gap = std::chrono::seconds(1);             ///< between two updates; after more it begins anew
 };
 
 /// When a session checks the skin by itself, where the operator wished for it: markers that slid all together are what
@@ -38,6 +41,7 @@ public:
 
 private:
     bool still(Instant at, const std::vector<Eigen::Vector3d>& markers);
+    bool due(Instant at, Instant known_at);
 
     SkinCheckScheduleSettings settings_;
     struct Seen {
@@ -45,7 +49,8 @@ private:
         std::vector<Eigen::Vector3d> markers;
     };
     std::deque<Seen> seen_;  ///< of the last `still_for`
-    std::optional<Instant> announced_at_, began_at_;
+    std::optional<Instant> announced_at_, began_at_, last_at_;
+    int unanswered_ = 0;  ///< checks that began since it was known
 };
 
 }  // namespace planlight

@@ -20,7 +20,7 @@ void let_through(int signal) {
 }
 
 void hold(int signal) {
-    if (waiting != 0) let_through(signal);
+    if (waiting == SIGINT && signal == SIGINT) let_through(signal);
     waiting = signal;
 }
 
@@ -30,13 +30,11 @@ HeldEndSignals::HeldEndSignals() {
     const std::lock_guard lock(mutex);
     if (holders++ > 0) return;
     for (std::size_t i = 0; i < kSignals.size(); ++i) {
-        struct sigaction now {};
-        held[i] = ::sigaction(kSignals[i], nullptr, &now) == 0 && now.sa_handler == SIG_DFL;
-        if (!held[i]) continue;
-        struct sigaction held_back {};
-        held_back.sa_handler = hold;
-        held_back.sa_flags = SA_RESTART;
-        ::sigaction(kSignals[i], &held_back, nullptr);
+        struct sigaction ours {}, before {};
+        ours.sa_handler = hold;
+        ours.sa_flags = SA_RESTART;
+        held[i] = ::sigaction(kSignals[i], &ours, &before) == 0 && before.sa_handler == SIG_DFL;
+        if (!held[i]) ::sigaction(kSignals[i], &before, nullptr);
     }
 }
 

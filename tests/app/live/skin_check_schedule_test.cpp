@@ -97,23 +97,52 @@ TEST(SkinCheckSchedule, LightThatNobodyVerifiedIsNotInterrupted) {
     EXPECT_EQ(verified.checked, Instant(305s)) << "never without notice";
 }
 
-TEST(SkinCheckSchedule, ACheckWithoutAnAnswerIsTriedAgainAfterAWhileAndAnnouncedAgain) {
+TEST(SkinCheckSchedule, ChecksWithoutAnAnswerComeLessAndLessOften) {
     SkinCheckSchedule schedule = every(60s);
-    const Played first = play(schedule, 0s, 120s, at_rest);
-    ASSERT_TRUE(first.checked);
-    schedule.began(*first.checked);
-    const Played second = play(schedule, *first.checked + 1s, 200s, at_rest);  // `known_at` is as it was
-    EXPECT_EQ(second.announced, *first.checked + Instant(20s));
-    EXPECT_EQ(second.checked, *first.checked + Instant(25s));
+    std::vector<double> began_s;
+    Instant from{};
+    for (int i = 0; i < 5; ++i) {  // `known_at` stays as it was
+        const Played played = play(schedule, from, from + Instant(200s), at_rest);
+        ASSERT_TRUE(played.checked);
+        EXPECT_GE(*played.checked - *played.announced, Instant(5s)) << "each is announced";
+        schedule.began(*played.checked);
+        began_s.push_back(seconds(*played.checked));
+        from = *played.checked + Instant(1s);
+    }
+    EXPECT_EQ(began_s, (std::vector<double>{65, 65 + 25, 90 + 45, 135 + 65, 200 + 65}))
+        << "20, 40, 60 s and 5 s notice";
+}
+
+TEST(SkinCheckSchedule, AfterAnAnswerItBeginsAnew) {
+    SkinCheckSchedule schedule = every(60s);
+    for (const Instant at : {65s, 90s}) schedule.began(at);
+    std::optional<Instant> checked;
+    for (Instant at = 100s; at < 300s && !checked; at += kFrame)
+        if (schedule.step(at, 100s, true, at_rest(at)).check) checked = at;
+    EXPECT_EQ(checked, Instant(165s));
+}
+
+TEST(SkinCheckSchedule, WhoNeverRestsIsNotAskedToWithoutEnd) {
+    SkinCheckSchedule schedule = every(300s);
+    const Played played = play(schedule, 300s, 420s, [](Instant at) {
+        std::vector<Eigen::Vector3d> markers = at_rest(at);
+        for (auto& marker : markers) marker.z() += std::sin(1.5 * seconds(at));  // breath
+        return markers;
+    });
+    EXPECT_FALSE(played.checked);
+    const auto asked_s = static_cast<double>(played.notices.size()) * seconds(kFrame);
+    EXPECT_NEAR(asked_s, 5 + 60 + 35, 0.5) << "again 20 s later, until the end";
 }
 
 TEST(SkinCheckSchedule, LightThatWasAwayIsNotInterruptedByWhatWasAnnouncedBefore) {
-    SkinCheckSchedule schedule = every(60s);
-    EXPECT_FALSE(play(schedule, 60s, 63s, at_rest).checked);
-    schedule.restart();
-    const Played after = play(schedule, 100s, 120s, at_rest);
-    EXPECT_EQ(after.announced, Instant(100s));
-    EXPECT_EQ(after.checked, Instant(105s));
+    for (const bool told : {true, false}) {  // by Track, or by a gap, as a lost camera leaves one
+        SkinCheckSchedule schedule = every(60s);
+        EXPECT_FALSE(play(schedule, 60s, 63s, at_rest).checked);
+        if (told) schedule.restart();
+        const Played after = play(schedule, 100s, 120s, at_rest);
+        EXPECT_EQ(after.announced, Instant(100s));
+        EXPECT_EQ(after.checked, Instant(105s));
+    }
 }
 
 }  // namespace

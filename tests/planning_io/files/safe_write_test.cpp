@@ -78,39 +78,57 @@ TEST(SafeWrite, AFileForItsOwnerIsSoFromItsFirstByteOnAlsoInPlaceOfOneForAll) {
     EXPECT_EQ(perms(file), fs::perms(0600));
 }
 
+/// What a test was started with may be to ignore it (nohup, a script's background).
+void as_by_default() {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
+}
+
 // Ctrl-C, a shutdown, a closed terminal: what is half written may be a patient's face.
 TEST(SafeWrite, ASignalThatEndsTheProgramLeavesNothingHalfWritten) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         const test::TemporaryFolder folder;
-        EXPECT_EXIT(write_folder_safely(folder.path() / "case", false,
-                                        [&](const fs::path& into) {
-                                            write_safely(into / "skin", "a face");
-                                            std::raise(signal);
-                                            write_safely(into / "more", "of it");
-                                            std::_Exit(9);  // is not come to
-                                        }),
-                    testing::KilledBySignal(signal), "");
+        const auto write_a_folder = [&] {
+            as_by_default();
+            write_folder_safely(folder.path() / "case", false, [&](const fs::path& into) {
+                write_safely(into / "skin", "a face");
+                std::raise(signal);
+                write_safely(into / "more", "of it");
+                std::_Exit(9);  // is not come to
+            });
+        };
+        EXPECT_EXIT(write_a_folder(), testing::KilledBySignal(signal), "");
         EXPECT_EQ(files_in(folder.path()), 0U) << signal;
-        EXPECT_EXIT(write_safely(folder.path() / "page",
-                                 [&](std::ostream& out) {
-                                     out << "a face" << std::flush;
-                                     std::raise(signal);
-                                 }),
-                    testing::KilledBySignal(signal), "");
+        const auto write_a_file = [&] {
+            as_by_default();
+            write_safely(folder.path() / "page", [&](std::ostream& out) {
+                out << "a face" << std::flush;
+                std::raise(signal);
+            });
+        };
+        EXPECT_EXIT(write_a_file(), testing::KilledBySignal(signal), "");
         EXPECT_EQ(files_in(folder.path()), 1U) << "whole: it was nearly done";
         EXPECT_EQ(read_whole(folder.path() / "page"), "a face");
     }
 }
 
-TEST(SafeWrite, ASecondSignalIsNotWaitedWith) {
-    const test::TemporaryFolder folder;
-    EXPECT_EXIT(write_folder_safely(folder.path() / "case", false,
-                                    [&](const fs::path&) {
-                                        std::raise(SIGINT);
-                                        std::raise(SIGINT);
-                                        std::_Exit(9);
-                                    }),
-                testing::KilledBySignal(SIGINT), "");
+// A terminal that is closed sends SIGHUP twice, a session that is ended SIGTERM and SIGHUP; a person who presses
+// Ctrl-C twice does not want to wait.
+TEST(SafeWrite, OnlyASecondCtrlCIsNotWaitedWith) {
+    for (const auto& [first, second] :
+         {std::pair(SIGHUP, SIGHUP), {SIGTERM, SIGHUP}, {SIGINT, SIGTERM}, {SIGINT, SIGINT}}) {
+        const test::TemporaryFolder folder;
+        const auto write = [&, first = first, second = second] {
+            as_by_default();
+            write_folder_safely(folder.path() / "case", false, [&](const fs::path& into) {
+                write_safely(into / "skin", "a face");
+                std::raise(first);
+                std::raise(second);
+                write_safely(into / "more", "of it");
+            });
+        };
+        EXPECT_EXIT(write(), testing::KilledBySignal(second), "");
+        EXPECT_EQ(files_in(folder.path()), second == SIGINT ? 1U : 0U) << first << ", " << second;
+    }
 }
 
 TEST(SafeWrite, ASignalThatTheProgramHandlesItselfIsItsOwn) {
