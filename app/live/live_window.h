@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/live/room.h"
+#include "app/live/skin_check_schedule.h"
 #include "app/recording/resume_offer.h"
 #include "app/session.h"
 #include "app/windows/operator_window.h"

@@ -30,7 +30,8 @@ HeldEndSignals::HeldEndSignals() {
     const std::lock_guard lock(mutex);
     if (holders++ > 0) return;
     for (std::size_t i = 0; i < kSignals.size(); ++i) {
-        struct sigaction ours {}, before {};
+        struct sigaction ours {
+        }, before{};
         ours.sa_handler = hold;
         ours.sa_flags = SA_RESTART;
         held[i] = ::sigaction(kSignals[i], &ours, &before) == 0 && before.sa_handler == SIG_DFL;

@@ -5,8 +5,7 @@
 #include <atomic>
 
 #include "app/live/live_session.h"
-#include "app/live/simulated_room.h"
-#include "tests/app/played_session.h"
+#include "tests/app/slipping_room.h"
 
 namespace planlight {
 namespace {
@@ -29,12 +28,11 @@ protected:
         void pressed(const std::string& action) noexcept override { pressed_checks += action == "check skin"; }
         std::atomic<int> all{0}, known{0}, pressed_checks{0};
     };
-    /// Follows a head that moves at 5 mm/s where it is not asked to lie still, verified, until `holds`.
+    /// Follows a head at rest, verified, until `holds`.
     template <class Holds>
-    static OperatorModel follow(const std::string& fault, Checks& checks, Holds holds) {
+    static OperatorModel follow(bool markers_slip, Checks& checks, Holds holds) {
         simulation::RoomSettings room;
         room.preset = simulation::Preset::paper;
-        room.seed = 24;
         const Case& the_case = test::example_case().prepared;
         const CaseDrawing drawing(the_case);
         SkinCheckScheduleSettings soon;
@@ -42,10 +40,8 @@ protected:
         soon.announced_for = 500ms;
         soon.still_for = 300ms;
         LiveSession session(
-            [&](const RoomProgress&) {
-                return std::make_unique<SimulatedRoom>(test::example_case().volume, the_case.plan, room, 5, fault);
-            },
-            the_case, drawing, {}, &checks, {}, soon);
+            [&](const RoomProgress&) { return std::make_unique<test::SlippingRoom>(room, markers_slip); }, the_case,
+            drawing, {}, &checks, {}, soon);
         wait_for(session, "Scan", [](const OperatorModel& m) { return m.scan.enabled; });
         session.post(OperatorAction::scan);
         wait_for(session, "the scan", [](const OperatorModel& m) { return m.do_register.enabled; });
@@ -66,7 +62,7 @@ protected:
 TEST_F(SkinCheckedByItself, LightOnSkinThatLiesWhereItLayComesBackGreen) {
     Checks checks;
     std::atomic<bool> announced{false};
-    const OperatorModel green = follow("", checks, [&](const OperatorModel& m) {
+    const OperatorModel green = follow(false, checks, [&](const OperatorModel& m) {
         for (const std::string& detail : m.status.details)
             if (detail.find("keep the patient still") != std::string::npos) announced = true;
         return checks.known >= 2 && m.status.kind == StatusKind::aligned;

@@ -1,5 +1,6 @@
 #include "planning_io/plan/plan_file.h"
 #include "tests/app/live/live_session_fixture.h"
+#include "tests/app/slipping_room.h"
 
 namespace planlight {
 namespace {
@@ -152,25 +153,6 @@ TEST_F(LiveSessionTest, AnItemThatWasHiddenRightBeforeDarkIsNotLitAfterwards) {
     EXPECT_FALSE(lit.rows[0].light_off_mm);
 }
 
-/// The simulated room with stickers that all slip along the skin by 2.5 mm when they are told to: as far as they can so
-/// that they still agree with each other, and farther than light may lie beside the plan.
-class SlippingRoom final : public Room {
-public:
-    explicit SlippingRoom(const simulation::RoomSettings& settings)
-        : rig_(test::example_case().volume, points_of(test::example_case().prepared.plan), settings) {}
-    std::string name() const override { return "a room whose markers slip"; }
-    const RigCalibration& rig() const override { return rig_.calibration(); }
-    Projector& projector() override { return rig_.projector(); }
-    StereoCamera& cameras() override { return rig_.cameras(); }
-    const Clock& clock() const override { return rig_.clock(); }
-    RoomKind kind() const override { return RoomKind::simulated; }
-    void computing() override { rig_.wait(10ms); }
-    void slip() { rig_.slip_marker(-1, {1.0, -1.0, 2.05}); }
-
-private:
-    simulation::SimulatedRig rig_;
-};
-
 // The second press comes before the first one's turn: neither is lost.
 TEST_F(LiveSessionTest, TrackAndAtOnceACheckOfTheSkinAreBothDone) {
     followed();
@@ -214,7 +196,7 @@ TEST_F(LiveSessionTest, AfterACheckOfTheSkinTheLightIsMeasuredAnew) {
 class LiveSessionWithSlippedMarkers : public LiveSessionTest {
 protected:
     std::unique_ptr<Room> made_room() override {
-        auto made = std::make_unique<SlippingRoom>(room);
+        auto made = std::make_unique<test::SlippingRoom>(room);
         entered = made.get();
         return made;
     }
@@ -222,7 +204,7 @@ protected:
         return wait_for(*session, "the refusal",
                         [](const OperatorModel& m) { return m.status.kind == StatusKind::refused && m.track.enabled; });
     }
-    SlippingRoom* entered = nullptr;  ///< once the session is ready
+    test::SlippingRoom* entered = nullptr;  ///< once the session is ready
 };
 
 // Somebody pressed Freeze on the projector's remote control: nothing that is ordered reaches the skin any more. The
