@@ -149,9 +149,12 @@ int run(const std::string& monitor_name, const Monitor& monitor) {
     const test::TemporaryFolder folder;
     SessionRecorder recorder(std::make_unique<RecordingFile>(folder.path() / "session.plrec"),
                              recording_head(prepared.prepared, {}, RecordMode::all, {}));
+    SkinCheckScheduleSettings soon;  // and what the session does by itself
+    soon.every = 1s;
+    soon.announced_for = soon.still_for = 200ms;
     LiveSession session(
         [&](const RoomProgress&) { return std::make_unique<SimulatedRoom>(volume, prepared.prepared.plan, room, 20); },
-        prepared.prepared, drawing, {}, &recorder);
+        prepared.prepared, drawing, {}, &recorder, {}, soon);
     const LightKeeper copy(keeper, session);
     const Eye eye(monitor);
     std::mt19937 random(seed);
