@@ -107,7 +107,7 @@ std::string LiveSession::post(OperatorAction action, AskedBy by, std::optional<s
         const SessionState next = after_press(from, action, scan_there_).value_or(from);
         if (next != state_ && (dark || !(next == SessionState::verifying || state_ == SessionState::unsure)))
             enter(next, blank_, model_, scan_there_);
-        presses_.push_back({action, darks_, state_, item});
+        presses_.push_back({action, darks_, state_, item, by});
         state_ = next;
         if (dark) model_.status = dark_status(state_, scan_there_);
         if (action == OperatorAction::confirm) model_.confirm = false;  // until there is something new to look at

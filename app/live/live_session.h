@@ -94,6 +94,7 @@ private:
         std::uint64_t darks = 0;
         SessionState from = SessionState::opening;  ///< in which it was pressed
         std::optional<std::size_t> item{};          ///< of what is done with one
+        AskedBy by = AskedBy::person;
     };
     void run(const MakeRoom& make_room);
     std::unique_ptr<Room> make(const MakeRoom& make_room);
@@ -114,7 +115,7 @@ private:
     ResumeCheck look_whether_it_holds(Session& session, const KeptMatch& match);
     bool look_first() const { return looked_ != looks_asked_; }
     void look_again(Session& session);
-    void check_skin(Session& session);
+    void check_skin(Session& session, AskedBy by);
     std::string check_skin_when_due(const Session& session, Room& room, const Session::Update& update);
     void say_of_skin(const std::string& words, OperatorModel& m);
     void give_up_scan();
@@ -179,7 +180,6 @@ private:
     std::uint64_t permitted_ = 0;       ///< `darks_` when the light of now was asked for; it is dark where they differ
     ObservedGate gate_;                 ///< of the session's thread
     SkinCheckSchedule checks_;          ///< of the session's thread
-    bool check_was_due_ = false;        ///< and not asked for by a person
     std::string skin_words_;            ///< of the last check, as they stand in the evidence
     Instant seen_at_{};                 ///< of the last frame, on the room's clock
     int landmark_ = -1;                 ///< that is lit for a person to look at; -1: the plan is lit

@@ -133,7 +133,6 @@ void LiveSession::device_lost(const Press& press, Session& session, const Device
     view_.failed(lost.what());
     landmark_lit_from_.reset();
     checks_.restart();
-    check_was_due_ = false;
     if (following_) gate_.other_light(seen_at_);  // what was measured was before
     happened(following_ ? SessionHappening::skin_checked : SessionHappening::failed, [&](OperatorModel& m) {
         const auto of_check = [](const Press& p) { return p.action == OperatorAction::check_skin; };
@@ -222,7 +221,7 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
             return;
         case OperatorAction::check_skin:
             room.let_patient_move(false);  // was asked to lie still
-            check_skin(session);
+            check_skin(session, press.by);
             room.let_patient_move(following_);
             break;
         case OperatorAction::track:

@@ -28,6 +28,8 @@ class SkinCheckSchedule {
 public:
     explicit SkinCheckSchedule(const SkinCheckScheduleSettings& settings = {}) : settings_(settings) {}
 
+    bool wished_for() const { return settings_.every.has_value(); }
+
     struct Turn {
         bool check = false;  ///< now
         std::string notice;  ///< a sentence for the operator while a check is announced; else empty

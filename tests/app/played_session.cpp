@@ -236,13 +236,10 @@ void press_when_free(LiveSession& session, OperatorAction action, ButtonState Op
 
 /// Says that the light is right on each landmark that is lit, as far as it is asked.
 void verify(LiveSession& session, const Counting& counting, int until) {
-    std::string confirmed;
+    LandmarkWitness witness(session);
     wait_for(session, "the updates", [&](const OperatorModel& model) {
         if (counting.updates() >= until) return true;
-        if (model.confirm && model.confirm_words != confirmed) {
-            confirmed = model.confirm_words;
-            session.post(OperatorAction::confirm);
-        }
+        witness.look(model);
         return !model.stop.enabled && model.status.kind == StatusKind::refused;  // the gate has stopped the light
     });
 }
@@ -285,6 +282,18 @@ void find(LiveSession& session, const PlayedSession& how, const ExampleCase& pat
 }
 
 }  // namespace
+
+void begin_to_follow(LiveSession& session) {
+    press_when_free(session, OperatorAction::scan, &OperatorModel::scan, "Scan");
+    press_when_free(session, OperatorAction::do_register, &OperatorModel::do_register, "the scan");
+    press_when_free(session, OperatorAction::track, &OperatorModel::track, "the match");
+}
+
+void LandmarkWitness::look(const OperatorModel& model) {
+    if (!model.confirm || model.confirm_words == said_) return;
+    said_ = model.confirm_words;
+    session_.post(OperatorAction::confirm);
+}
 
 const ExampleCase& example_case() {
     static const ExampleCase made = [] {

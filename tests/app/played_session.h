@@ -39,6 +39,21 @@ OperatorModel wait_for(LiveSession& session, const char* what, Holds holds) {
     }
 }
 
+/// Presses Scan, Register and Track, each as soon as it can be pressed.
+void begin_to_follow(LiveSession& session);
+
+/// Says once of each landmark that is lit that the light on it is right. To be shown every model.
+class LandmarkWitness {
+public:
+    explicit LandmarkWitness(LiveSession& session) : session_(session) {}
+    void look(const OperatorModel& model);
+    const std::string& said() const { return said_; }  ///< last: the words of the button
+
+private:
+    LiveSession& session_;
+    std::string said_;
+};
+
 /// How a session in the simulated room is played without a window.
 struct PlayedSession {
     simulation::Preset preset = simulation::Preset::paper;

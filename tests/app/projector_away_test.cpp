@@ -60,19 +60,11 @@ protected:
                 return std::make_unique<SimulatedRoom>(test::example_case().volume, the_case.plan, room, 5, fault);
             },
             the_case, drawing, {}, observer);
-        wait_for(session, "Scan", [](const OperatorModel& m) { return m.scan.enabled; });
-        session.post(OperatorAction::scan);
-        wait_for(session, "the scan", [](const OperatorModel& m) { return m.do_register.enabled; });
-        session.post(OperatorAction::do_register);
-        wait_for(session, "the match", [](const OperatorModel& m) { return m.track.enabled; });
-        session.post(OperatorAction::track);
-        std::string said;
+        test::begin_to_follow(session);
+        test::LandmarkWitness witness(session);
         bool green = false, card_asked_for = false;
         wait_for(session, "green light", [&](const OperatorModel& m) {
-            if (m.confirm && m.confirm_words != said) {
-                said = m.confirm_words;
-                session.post(OperatorAction::confirm);
-            }
+            witness.look(m);
             card_asked_for |= asks_to_read_the_card(m);
             green |= m.status.kind == StatusKind::aligned;
             return green && (fault.empty() || m.status.kind != StatusKind::aligned);
@@ -119,15 +111,12 @@ protected:
             EXPECT_NE(m.status.kind, StatusKind::aligned) << m.status.headline;
             return m.confirm;
         });
-        std::string said;
+        test::LandmarkWitness witness(session);
         wait_for(session, "green light again", [&](const OperatorModel& m) {
-            if (m.confirm && m.confirm_words != said) {
-                said = m.confirm_words;
-                session.post(OperatorAction::confirm);
-            }
+            witness.look(m);
             return m.status.kind == StatusKind::aligned;
         });
-        EXPECT_EQ(said, "Light 2 is right");
+        EXPECT_EQ(witness.said(), "Light 2 is right");
     }
     static inline const std::vector<std::string> kCard{"E. M.", "RIGHT"};
 };

@@ -42,18 +42,10 @@ protected:
         LiveSession session(
             [&](const RoomProgress&) { return std::make_unique<test::SlippingRoom>(room, markers_slip); }, the_case,
             drawing, {}, &checks, {}, soon);
-        wait_for(session, "Scan", [](const OperatorModel& m) { return m.scan.enabled; });
-        session.post(OperatorAction::scan);
-        wait_for(session, "the scan", [](const OperatorModel& m) { return m.do_register.enabled; });
-        session.post(OperatorAction::do_register);
-        wait_for(session, "the match", [](const OperatorModel& m) { return m.track.enabled; });
-        session.post(OperatorAction::track);
-        std::string said;
+        test::begin_to_follow(session);
+        test::LandmarkWitness witness(session);
         return wait_for(session, "what is expected", [&](const OperatorModel& m) {
-            if (m.confirm && m.confirm_words != said) {
-                said = m.confirm_words;
-                session.post(OperatorAction::confirm);
-            }
+            witness.look(m);
             return holds(m);
         });
     }
