@@ -15,6 +15,7 @@
 #include "app/console.h"
 #include "app/freed_memory.h"
 #include "app/site_settings.h"
+#include "app/words/words.h"
 #include "planning_io/types/error.h"
 #include "projection/projector_process.h"
 
@@ -78,6 +79,9 @@ int run_command(const CLI::App& command, const Run& run, const ConsoleSettings& 
         print_to_user(fmt::format("planlight: {}\n", problem));
         return static_cast<int>(ExitCode::usage);
     }
+    // Also where no window is opened: a typing error would else be met in the operating room.
+    if (const auto* language = command.get_option_no_throw("--language"); language && language->count() > 0)
+        words_of(language->results().back());
     const auto* json = command.get_option_no_throw("--json");
     set_up_console(console, json && json->count() > 0);
     log_line(fmt::format("planlight {} ({})", PLANLIGHT_VERSION, line));
@@ -111,7 +115,7 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        if (error.get_exit_code() == 0) return run_and_explain([&] { return app.exit(error); });  // --help, --version
         print_to_user(usage_problem(app, error) + "\n");
         return static_cast<int>(ExitCode::usage);
     }

@@ -1,8 +1,10 @@
 #include "segmentation/head_survey.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace planlight {
@@ -92,6 +94,49 @@ Mask rim_within_blank(const HeadSurvey& survey, const Eigen::Affine3d& voxel_fro
     return Mask(survey.measured.size(), 0);
 }
 
+/// Squared distances along one line, of those that stand on it (Felzenszwalb & Huttenlocher 2012): the lower envelope
+/// of parabolas, over those that are nearer than the most.
+struct Envelope {
+    float step_mm;
+    double longest_mm;
+
+    struct Parabolas {
+        std::vector<int> place;
+        std::vector<float> from;  ///< where each begins to be the lowest
+        std::vector<float> height;
+    };
+
+    void replace(std::vector<float>& line, Parabolas& lowest) const {
+        const float most = static_cast<float>(longest_mm * longest_mm);
+        const auto [least, highest] = std::minmax_element(line.begin(), line.end());
+        if (!(*least < most) || !(*highest > 0)) return;  // far from all, or the target itself: stays as it is
+        const int n = static_cast<int>(line.size()),
+                  reach = static_cast<int>(longest_mm / static_cast<double>(step_mm));
+        auto& [place, from, height] = lowest;
+        place.clear(), from.clear(), height.clear();
+        for (int i = 0; i < n; ++i) {
+            const float here = line[static_cast<std::size_t>(i)];
+            if (!(here < most)) continue;
+            float begins = -1e30F;
+            for (; !place.empty(); place.pop_back(), from.pop_back(), height.pop_back()) {
+                const int last = place.back();
+                begins = ((here - height.back()) / (step_mm * step_mm) + static_cast<float>(i * i - last * last)) /
+                         static_cast<float>(2 * (i - last));
+                if (begins > from.back()) break;
+                begins = -1e30F;
+            }
+            place.push_back(i), from.push_back(begins), height.push_back(here);
+        }
+        for (std::size_t i = 0, p = 0; i < line.size(); ++i) {
+            while (p + 1 < place.size() && from[p + 1] <= static_cast<float>(i)) ++p;
+            const int away = static_cast<int>(i) - place[p];
+            line[i] = std::abs(away) <= reach
+                          ? std::min(most, height[p] + step_mm * step_mm * static_cast<float>(away * away))
+                          : most;
+        }
+    }
+};
+
 }  // namespace
 
 Vector3d HeadSurvey::place_of(std::size_t index) const {
@@ -119,6 +164,12 @@ HeadSurvey survey_of(const Volume& volume, const SurveySettings& settings) {
 
     const Eigen::Affine3d voxel_from_ct = volume.ct_from_voxel.inverse();
     const Sampler sample{volume};
+    std::array<Vector3d, 8> asides;  // from the middle of a voxel to its eight places, in voxels of the volume
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+        Vector3d aside_in_ct;
+        for (int a = 0; a < 3; ++a) aside_in_ct[a] = (corner >> a) & 1 ? step / 4 : -step / 4;
+        asides[corner] = voxel_from_ct.linear() * aside_in_ct;
+    }
     Vector3d rim_width;  // in voxels of the volume
     for (int a = 0; a < 3; ++a) rim_width[a] = 1.2 * step / volume.ct_from_voxel.linear().col(a).norm();
     tbb::parallel_for(0, survey.grid.size[2], [&](int k) {
@@ -128,10 +179,8 @@ HeadSurvey survey_of(const Volume& volume, const SurveySettings& settings) {
                 const Vector3d middle = voxel_from_ct * (survey.first_in_ct + step * Vector3d(i, j, k));
                 float sum = 0;
                 int count = 0;
-                for (int corner = 0; corner < 8; ++corner) {
-                    Vector3d aside;
-                    for (int a = 0; a < 3; ++a) aside[a] = (corner >> a) & 1 ? step / 4 : -step / 4;
-                    const float value = sample(middle + voxel_from_ct.linear() * aside);
+                for (const Vector3d& aside : asides) {
+                    const float value = sample(middle + aside);
                     if (!std::isfinite(value)) continue;
                     sum += value;
                     ++count;
@@ -173,45 +222,22 @@ std::vector<float> smoothed(const HeadSurvey& survey, const std::vector<float>& 
 
 std::vector<float> distance_from(const Mask& mask, std::uint8_t target, const VoxelGrid& grid, double longest_mm) {
     const float most = static_cast<float>(longest_mm * longest_mm);
-    std::vector<float> squared(mask.size()), next(mask.size());
+    std::vector<float> squared(mask.size());
     for (std::size_t v = 0; v < mask.size(); ++v) squared[v] = mask[v] == target ? 0 : most;
     std::array<std::size_t, 3> strides{1, grid.row(), grid.slab()};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::size_t stride = strides[axis];
-        const int n = grid.size[axis];
-        const auto step = static_cast<float>(grid.spacing_mm[static_cast<int>(axis)]);
-        const int reach = static_cast<int>(longest_mm / static_cast<double>(step));
-        std::vector<std::size_t> lines;
-        for (std::size_t v = 0; v < mask.size(); ++v)
-            if (v / stride % static_cast<std::size_t>(n) == 0) lines.push_back(v);
-        tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t l) {
-            // Lower envelope of parabolas (Felzenszwalb & Huttenlocher 2012), over those that are nearer than the most.
-            std::vector<int> place;
-            std::vector<float> from;
-            const auto value = [&](int i) { return squared[lines[l] + static_cast<std::size_t>(i) * stride]; };
-            const auto crossing = [&](int a, int b) {
-                return ((value(b) - value(a)) / (step * step) + static_cast<float>(b * b - a * a)) /
-                       static_cast<float>(2 * (b - a));
-            };
-            for (int i = 0; i < n; ++i) {
-                if (!(value(i) < most)) continue;
-                while (!place.empty() && crossing(place.back(), i) <= from.back()) place.pop_back(), from.pop_back();
-                from.push_back(place.empty() ? -1e30F : crossing(place.back(), i));
-                place.push_back(i);
-            }
-            std::size_t p = 0;
-            for (int i = 0; i < n; ++i) {
-                float best = most;
-                if (!place.empty()) {
-                    while (p + 1 < place.size() && from[p + 1] <= static_cast<float>(i)) ++p;
-                    const int away = i - place[p];
-                    if (std::abs(away) <= reach)
-                        best = std::min(most, value(place[p]) + step * step * static_cast<float>(away * away));
-                }
-                next[lines[l] + static_cast<std::size_t>(i) * stride] = best;
+        const std::size_t stride = strides[axis], n = static_cast<std::size_t>(grid.size[axis]);
+        const Envelope envelope{static_cast<float>(grid.spacing_mm[static_cast<int>(axis)]), longest_mm};
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mask.size() / n), [&](const auto& lines) {
+            std::vector<float> line(n);
+            Envelope::Parabolas parabolas;
+            for (std::size_t l = lines.begin(); l < lines.end(); ++l) {
+                const std::size_t begin = l / stride * stride * n + l % stride;
+                for (std::size_t i = 0; i < n; ++i) line[i] = squared[begin + i * stride];
+                envelope.replace(line, parabolas);
+                for (std::size_t i = 0; i < n; ++i) squared[begin + i * stride] = line[i];
             }
         });
-        std::swap(squared, next);
     }
     for (float& d : squared) d = std::sqrt(d);
     return squared;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace planlight {
 
@@ -15,6 +15,14 @@ struct MiddlePlane {
     bool looks_aside() const { return !(yaw > -0.27 && yaw < 0.27); }
     /// How far to the left of the plane, mm.
     double left_of(const Eigen::Vector3d& p_in_ct) const { return left_in_ct().dot(p_in_ct - centre_in_ct) - aside_mm; }
+    /// Of places in ct.
+    Eigen::Affine3d mirror_in_ct() const {
+        const Eigen::Vector3d left = left_in_ct();
+        Eigen::Affine3d mirror = Eigen::Affine3d::Identity();
+        mirror.linear() -= 2 * left * left.transpose();
+        mirror.translation() = 2 * (left.dot(centre_in_ct) + aside_mm) * left;
+        return mirror;
+    }
     Eigen::Vector3d mirrored(const Eigen::Vector3d& p_in_ct) const {
         return p_in_ct - 2 * left_of(p_in_ct) * left_in_ct();
     }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "planning_io/types/statistics.h"
@@ -27,13 +28,14 @@ constexpr std::size_t kMostPoints = 6000;
 /// Signed distances from the body's surface (positive outside), where the volume reaches.
 struct Distances {
     CoarseBody coarse;
-    Eigen::Affine3d voxel_from_ct;
-    std::array<int, 3> size;  ///< of the volume
+    Eigen::Affine3d voxel_from_ct, cell_from_ct;  ///< of the volume, of the grid
+    std::array<int, 3> size;                      ///< of the volume
     std::vector<float> out_mm, in_mm;
 
     Distances(CoarseBody body, const Volume& volume)
         : coarse(std::move(body)), voxel_from_ct(volume.ct_from_voxel.inverse()), size(volume.size) {
         const VoxelGrid& grid = coarse.places.grid;
+        cell_from_ct = Eigen::Scaling(1 / coarse.places.step_mm()) * Eigen::Translation3d(-coarse.places.first_in_ct);
         out_mm = distance_from(coarse.body, 1, grid, kFar_mm);
         Mask whole = coarse.body;  // an end of the volume is no surface
         for (std::size_t v = 0; v < whole.size(); ++v)
@@ -41,12 +43,13 @@ struct Distances {
         in_mm = distance_from(whole, 0, grid, kFar_mm);
     }
     /// Empty outside the grid.
-    std::optional<std::size_t> index_at(const Vector3d& p_in_ct) const {
-        const HeadSurvey& places = coarse.places;
-        const Eigen::Vector3i at = ((p_in_ct - places.first_in_ct) / places.step_mm()).array().round().cast<int>();
+    std::optional<std::size_t> index_at(const Vector3d& p_in_ct) const { return index_of(cell_from_ct * p_in_ct); }
+    std::optional<std::size_t> index_of(const Vector3d& cell) const {
+        const auto& cells = coarse.places.grid.size;
         for (int a = 0; a < 3; ++a)
-            if (at[a] < 0 || at[a] >= places.grid.size[static_cast<std::size_t>(a)]) return std::nullopt;
-        return places.index(at.x(), at.y(), at.z());
+            if (!(cell[a] >= -0.5 && cell[a] < cells[static_cast<std::size_t>(a)] - 0.5)) return std::nullopt;
+        const Eigen::Vector3i at = (cell.array() + 0.5).cast<int>();  // the nearest: nothing is negative here
+        return coarse.places.index(at.x(), at.y(), at.z());
     }
     bool is_measured(const Vector3d& p_in_ct) const {
         const Vector3d at = voxel_from_ct * p_in_ct;
@@ -56,8 +59,13 @@ struct Distances {
     }
     /// Not a number where nothing was measured. The grid is the skin's box: beyond it lies air, or the volume's end.
     double operator()(const Vector3d& p_in_ct) const {
-        const auto at = index_at(p_in_ct);
-        if (!at) return is_measured(p_in_ct) ? kFar_mm : NAN;
+        return at_cell(cell_from_ct * p_in_ct, [&] { return p_in_ct; });
+    }
+    /// The same by the place in the grid's voxels; `place_in_ct()` gives it in ct where it lies outside.
+    template <class Place>
+    double at_cell(const Vector3d& cell, const Place& place_in_ct) const {
+        const auto at = index_of(cell);
+        if (!at) return is_measured(place_in_ct()) ? kFar_mm : NAN;
         if (!coarse.places.measured[*at]) return NAN;
         return static_cast<double>(coarse.body[*at] ? -in_mm[*at] : out_mm[*at]);
     }
@@ -98,7 +106,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 /// From that plane to the nearest of least `misfit`, in steps that are halved; gives its misfit.
 template <class Misfit>
 double descend(const Misfit& misfit, MiddlePlane& plane) {
-    double least = misfit(plane);
+    double least = misfit(plane, INFINITY);
     for (double step = 8; step >= 0.5; step /= 2)  // degrees and mm
         for (bool again = true; again;) {
             again = false;
@@ -106,7 +114,7 @@ double descend(const Misfit& misfit, MiddlePlane& plane) {
                 for (int k = 0; k < 3; ++k) {
                     MiddlePlane next = plane;
                     (k == 0 ? next.yaw : k == 1 ? next.roll : next.aside_mm) += k < 2 ? by * kDegree : by;
-                    if (const double off = misfit(next); off < least) least = off, plane = next, again = true;
+                    if (const double off = misfit(next, least); off < least) least = off, plane = next, again = true;
                 }
         }
     return least;
@@ -116,14 +124,19 @@ double descend(const Misfit& misfit, MiddlePlane& plane) {
 /// from planes that are turned; one of these must mirror clearly better.
 MiddlePlane middle_plane(const Distances& distances, const std::vector<Point>& points, const HeadBall& ball) {
     constexpr double kClearly = 0.7;
-    const auto misfit = [&](const MiddlePlane& plane) {
-        double sum = 0, weight = 0, all = 0;
+    const double all =
+        std::accumulate(points.begin(), points.end(), 0.0, [](double sum, const Point& p) { return sum + p.area_cm2; });
+    // Beyond `worst` it is enough to know that it is worse.
+    const auto misfit = [&](const MiddlePlane& plane, double worst) -> double {
+        const Eigen::Affine3d mirror = plane.mirror_in_ct();
+        const Eigen::Affine3d cell_from_ct = distances.cell_from_ct * mirror;
+        double sum = 0, weight = 0;
         for (const Point& p : points) {
-            all += p.area_cm2;
-            const double off_mm = distances(plane.mirrored(p.at_in_ct));
+            const double off_mm = distances.at_cell(cell_from_ct * p.at_in_ct, [&] { return mirror * p.at_in_ct; });
             if (std::isnan(off_mm)) continue;
             sum += p.area_cm2 * std::pow(std::min(std::abs(off_mm), kOneSided_mm), 2);
             weight += p.area_cm2;
+            if (sum > worst * all) return INFINITY;
         }
         return weight > kLeastMirrored * all ? sum / weight : INFINITY;  // not the plane that mirrors next to nothing
     };

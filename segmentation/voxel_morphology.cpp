@@ -106,22 +106,32 @@ Mask close(const Mask& mask, const VoxelGrid& grid, double radius_mm) {
 
 std::size_t flood(Mask& mask, const VoxelGrid& grid, std::vector<std::size_t> seeds, std::uint8_t from, std::uint8_t to,
                   std::vector<std::size_t>* reached) {
+    // Runs of a row at a time, with one seed for each run beside them: no voxel is divided into its place but a seed.
+    const std::size_t row = grid.row(), slab = grid.slab();
+    const auto nj = static_cast<std::size_t>(grid.size[1]), nk = static_cast<std::size_t>(grid.size[2]);
     std::size_t changed = 0;
-    std::erase_if(seeds, [&](std::size_t s) {
-        if (mask[s] != from) return true;
-        mask[s] = to;
-        return false;
-    });
+    const auto seed_runs = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v)
+            if (mask[v] == from && (v + 1 == end || mask[v + 1] != from)) seeds.push_back(v);
+    };
     while (!seeds.empty()) {
-        const std::size_t index = seeds.back();
+        const std::size_t seed = seeds.back();
         seeds.pop_back();
-        ++changed;
-        if (reached != nullptr) reached->push_back(index);
-        for_face_neighbours(grid, index, [&](std::size_t n) {
-            if (mask[n] != from) return;
-            mask[n] = to;
-            seeds.push_back(n);
-        });
+        if (mask[seed] != from) continue;
+        const std::size_t line = seed / row, first = line * row, last = first + row;
+        std::size_t begin = seed, end = seed + 1;
+        while (begin > first && mask[begin - 1] == from) --begin;
+        while (end < last && mask[end] == from) ++end;
+        for (std::size_t v = begin; v < end; ++v) {
+            mask[v] = to;
+            if (reached != nullptr) reached->push_back(v);
+        }
+        changed += end - begin;
+        const std::size_t j = line % nj, k = line / nj;
+        if (j > 0) seed_runs(begin - row, end - row);
+        if (j + 1 < nj) seed_runs(begin + row, end + row);
+        if (k > 0) seed_runs(begin - slab, end - slab);
+        if (k + 1 < nk) seed_runs(begin + slab, end + slab);
     }
     return changed;
 }

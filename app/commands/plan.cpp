@@ -18,6 +18,7 @@
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
 #include "projection/check_plan.h"
+#include "projection/draw_plan.h"
 #include "projection/label_names.h"
 #include "projection/mid_plane.h"
 #include "projection/said_frame.h"
@@ -220,6 +221,10 @@ int run_plan(const PlanOptions& options) {
         refuse_stopped_plan(verdict);
     } else if (patient.box) {
         check_in_box(read.plan, *patient.box);
+    }
+    for (auto& sentence : check_names(read.plan, DrawingSettings{}.text_height_mm)) {
+        warn(sentence);
+        verdict.warnings.push_back(std::move(sentence));
     }
     const std::vector<Clearances> clearances = measure_risk(read.plan, patient, options, verdict.warnings);
     if (!options.out.empty()) write(read, patient, options);

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <regex>
+#include <sstream>
 
 #include "planning_io/files/nearest_word.h"
 
@@ -50,9 +52,53 @@ std::string unknown_word(const CLI::App& app, const CLI::App* command) {
     return {};
 }
 
-/// The library's sentence with a full stop.
+/// "a", "a or b", "a, b or c".
+std::string alternatives(const std::vector<std::string>& words) {
+    if (words.size() < 2) return fmt::format("{}", fmt::join(words, ""));
+    return fmt::format("{} or {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
+}
+
+std::vector<std::string> split_at_commas(const std::string& text) {
+    std::vector<std::string> words;
+    std::istringstream in(text);
+    for (std::string word; std::getline(in, word, ',');) words.push_back(word);
+    return words;
+}
+
+/// A number without the zeros behind its point: "0.1" of "0.100000".
+std::string as_typed(std::string number) {
+    if (number.find('.') == std::string::npos) return number;
+    while (number.back() == '0') number.pop_back();
+    if (number.back() == '.') number.pop_back();
+    return number;
+}
+
+std::string values(const std::string& count) {
+    return count == "1" ? "one value" : count + " values";
+}
+
+/// The library's sentence in words that say what to give, with a full stop; as it is where it already does.
 std::string sentence(std::string text) {
     if (const auto line = text.find('\n'); line != std::string::npos) text.resize(line);
+    std::smatch is;
+    if (std::regex_match(text, is, std::regex("Could not convert: (\\S+) = (.*)")))
+        return fmt::format("{}: \"{}\" is no number that it takes.", is.str(1), is.str(2));
+    if (std::regex_match(text, is, std::regex("(\\S+): (\\d+) required .+ missing")))
+        return fmt::format("{} takes {}, and not all were given.", is.str(1), values(is.str(2)));
+    if (std::regex_match(text, is, std::regex("(\\S+): At (Most|least) (\\d+) required but received (\\d+)")))
+        return fmt::format("{} takes {}{}, and {} were given.", is.str(1), is.str(2) == "least" ? "at least " : "",
+                           values(is.str(3)), is.str(4));
+    if (std::regex_match(text, is, std::regex("(\\S+): (.*) not in \\{(.*)\\}"))) {
+        const auto words = split_at_commas(is.str(3));
+        return fmt::format("{}: \"{}\" is not {}.{}", is.str(1), is.str(2), alternatives(words),
+                           meant(nearest_word(is.str(2), words)));
+    }
+    if (std::regex_match(text, is, std::regex("(\\S+): Value (.*) not in range (.*) to (.*)")))
+        return fmt::format("{}: \"{}\" is no number from {} to {}.", is.str(1), is.str(2), as_typed(is.str(3)),
+                           as_typed(is.str(4)));
+    if (std::regex_match(text, is, std::regex("(\\S+) (requires|excludes) (\\S+)")))
+        return is.str(2) == "requires" ? fmt::format("{} needs {} beside it.", is.str(1), is.str(3))
+                                       : fmt::format("{} and {} cannot be given both.", is.str(1), is.str(3));
     if (!text.empty() && text.back() != '.') text += '.';
     return text;
 }

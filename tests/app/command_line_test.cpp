@@ -91,8 +91,9 @@ TEST_F(CommandLineTest, OptionsThatDoNotMakeAWholeQuestionAreAMatterOfUsage) {
 }
 
 TEST_F(CommandLineTest, JsonIsNoPartOfWhatIsDoneInAWindow) {
-    expect_refused(run("review case --cloud cloud.ply --landmarks pairs.csv --json"), 2, "--landmarks excludes --json");
-    expect_refused(run("replay session.plrec --show --json"), 2, "--show excludes --json");
+    expect_refused(run("review case --cloud cloud.ply --landmarks pairs.csv --json"), 2,
+                   "--landmarks and --json cannot be given both");
+    expect_refused(run("replay session.plrec --show --json"), 2, "--show and --json cannot be given both");
 }
 
 // A shell makes nothing of a variable that is not set; the work must not go on as if the option were not there.
@@ -144,6 +145,40 @@ TEST_F(CommandLineTest, TheHelpThatIsAdvisedIsThatOfTheCommand) {
     expect_refused(run("patterns --set slow --out p"), 2, "Run `planlight patterns --help`.");
     expect_refused(run(""), 2, "Run `planlight --help`.");
     expect_refused(run("board one two"), 2, "one argument too many");
+}
+
+TEST_F(CommandLineTest, WhatAnOptionTakesIsSaidInWordsForPeople) {
+    expect_refused(run("patterns --set faast --out p"), 2, "--set: \"faast\" is not ");
+    expect_refused(run("patterns --set faast --out p"), 2, "Is fast meant?");
+    expect_refused(run("simulate --seed 99999999999999999999999 --out s"), 2, "is no number that it takes.");
+    expect_refused(run("patterns --width many --out p"), 2, "--width: \"many\" is no number from 64 to 8192.");
+    expect_refused(run("patterns --width 9 --out p"), 2, "--width: \"9\" is no number from 64 to 8192.");
+    expect_refused(run("patterns --width"), 2, "--width takes one value, and not all were given.");
+    expect_refused(run("patterns --width 64 --width 65 --out p"), 2, "--width takes one value, and 2 were given.");
+    expect_refused(run("board --quiet --verbose"), 2, "cannot be given both.");
+}
+
+TEST_F(CommandLineTest, HelpThatCouldNotBePrintedIsNoSuccess) {
+    for (const char* asked : {"--help", "register --help", "--version"})
+        EXPECT_EQ(WEXITSTATUS(std::system(
+                      ("'" PLANLIGHT_PROGRAM "' " + std::string(asked) + " > /dev/full 2> /dev/null").c_str())),
+                  7)
+            << asked;
+}
+
+TEST_F(CommandLineTest, ALanguageThatIsNotThereIsRefusedAlsoWhereNoWindowOpens) {
+    expect_refused(run("review case --json --language xx"), 3, "xx");
+    expect_refused(run("review case --json --language xx"), 3, "language");
+    expect_refused(run("review case --json --language de"), 3, "case");
+}
+
+TEST_F(CommandLineTest, ItemsThatNobodyCouldTellApartAreToldBeforeThereIsACase) {
+    std::ofstream(folder_ / "two.csv") << "name,entry_x,entry_y,entry_z,target_x,target_y,target_z\n"
+                                          "A,0,0,0,10,10,10\nA,5,5,0,10,10,10\n";
+    const auto listed = run("plan two.csv --frame LPS --json");
+    EXPECT_EQ(listed.exit_code, 0) << listed.err;
+    EXPECT_NE(listed.err.find("another item has the same name"), std::string::npos) << listed.err;
+    EXPECT_EQ(nlohmann::json::parse(listed.out).at("warnings").size(), 2U) << listed.out;
 }
 
 TEST_F(CommandLineTest, AResultBeginsOnItsOwnLineAfterTheBar) {
