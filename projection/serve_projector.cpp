@@ -12,6 +12,7 @@
 #include "planning_io/types/suspend_watch.h"
 #include "projection/projector_process.h"
 #include "projection/projector_window.h"
+#include "projection/realtime_priority.h"
 
 namespace planlight {
 namespace {
@@ -110,7 +111,7 @@ void follow_or_end(ProjectorWindow& window, LightMailbox& mailbox, int bell) {
 int serve_projector(const std::string& monitor, int bell, int descriptor) {
     // What a terminal sends, Ctrl-C and Ctrl-Z say, is for the program; this process must never stop while it is lit.
     for (const int signal : {SIGINT, SIGHUP, SIGTSTP, SIGTTOU, SIGTTIN}) std::signal(signal, SIG_IGN);
-    setpriority(PRIO_PROCESS, 0, -10);  // where the system allows it
+    if (!request_realtime_priority()) setpriority(PRIO_PROCESS, 0, -10);  // where the system allows either
     LightMailbox mailbox(descriptor);
     end_with_program(bell);
     try {

@@ -5,6 +5,7 @@
 
 #include "planning_io/types/error.h"
 #include "projection/opengl_driver.h"
+#include "projection/realtime_priority.h"
 
 namespace planlight {
 namespace fs = std::filesystem;
@@ -28,6 +29,7 @@ MachineFigures examine_machine(const fs::path& folder) {
         machine.gl_remedy = error.remedy;
     }
     machine.dark_after = monitors_dark_after();
+    machine.realtime_priority = may_have_realtime_priority();
     for (const auto& cpu : fs::directory_iterator("/sys/devices/system/cpu", failure)) {
         std::ifstream file(cpu.path() / "cpufreq" / "scaling_governor");
         std::string governor;

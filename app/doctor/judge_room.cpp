@@ -380,6 +380,12 @@ std::vector<DoctorLine> judge_machine(const MachineFigures& machine) {
     lines.push_back(line("computer, processor", slow.empty() ? Health::good : Health::look,
                          all.empty() ? "governor not told" : "governor " + all,
                          "As root: `cpupower frequency-set -g performance`; saving power delays pictures."));
+    lines.push_back(
+        line("computer, priority", machine.realtime_priority ? Health::good : Health::look,
+             machine.realtime_priority ? "the light goes before all that other programs compute"
+                                       : "while other programs compute, the light may go out late",
+             "As root, write `USER - rtprio 1` (this user's name) into /etc/security/limits.d/planlight.conf, "
+             "and log in anew."));
     return lines;
 }
 

@@ -124,6 +124,7 @@ struct MachineFigures {
     std::vector<std::string> governors;                ///< of the processors, each once; empty: not told
     std::string gl_remedy = {};                        ///< of `gl_problem`
     std::optional<MonitorsDarkAfter> dark_after = {};  ///< empty: there is no display
+    bool realtime_priority = false;                    ///< the projector process would get it
 };
 
 std::vector<DoctorLine> judge_machine(const MachineFigures& machine);

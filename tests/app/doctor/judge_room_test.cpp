@@ -300,6 +300,7 @@ TEST(Doctor, ARigThatMovedStopsAndAnOldOneIsLookedAt) {
 
 TEST(Doctor, TheComputer) {
     MachineFigures machine{std::uint64_t{80'000'000'000}, "/data", "NVIDIA T400/PCIe/SSE2", "", {"performance"}};
+    machine.realtime_priority = true;
     EXPECT_EQ(worst_of(judge_machine(machine)), Health::good);
     machine.free_bytes = 3'000'000'000;
     EXPECT_EQ(about("disk", judge_machine(machine)).health, Health::look);
@@ -316,6 +317,8 @@ TEST(Doctor, TheComputer) {
     EXPECT_EQ(about("processor", judge_machine(machine)).health, Health::look);
     machine.governors.clear();
     EXPECT_EQ(about("processor", judge_machine(machine)).health, Health::good) << "a virtual machine tells none";
+    machine.realtime_priority = false;
+    EXPECT_EQ(about("priority", judge_machine(machine)).health, Health::look);
     expect_remedies(judge_machine(machine));
 }
 

@@ -51,11 +51,12 @@ Sequence gray_code_of(const stripe_room::Room& room, double cell_px, bool invers
 std::vector<GrayImage> with_noise(std::vector<GrayImage> frames, double sigma, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal(0, sigma);
-    std::vector<int> noise(1 << 16);
+    constexpr std::size_t kNoises = 1 << 16;
+    std::vector<int> noise(kNoises);
     for (int& n : noise) n = static_cast<int>(std::lround(normal(random)));
     for (GrayImage& f : frames) {
         std::size_t at = random();
-        for (auto& p : f.pixels) p = static_cast<std::uint8_t>(std::clamp(p + noise[at++ % noise.size()], 0, 255));
+        for (auto& p : f.pixels) p = static_cast<std::uint8_t>(std::clamp(p + noise[at++ % kNoises], 0, 255));
     }
     return frames;
 }

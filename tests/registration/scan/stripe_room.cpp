@@ -1,6 +1,7 @@
 #include "tests/registration/scan/stripe_room.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <opencv2/calib3d.hpp>
@@ -64,9 +65,10 @@ public:
     /// At a pixel coordinate (0: the centre of the first pixel).
     double at(double pixel) const {
         const double s = (pixel + 0.5) * kFine - 0.5 + kMargin;
-        const int i = static_cast<int>(std::floor(s));
-        if (i < 0 || i + 1 >= fine_.cols) return 0;
-        return fine_.at<double>(0, i) + (s - i) * (fine_.at<double>(0, i + 1) - fine_.at<double>(0, i));
+        if (!(s >= 0 && s < fine_.cols - 1)) return 0;
+        const int i = static_cast<int>(s);
+        const double* const here = fine_.ptr<double>(0) + i;
+        return here[0] + (s - i) * (here[1] - here[0]);
     }
 
 private:
@@ -202,6 +204,31 @@ Truth truth_of(const Room& room, const Optics& camera) {
     return truth;
 }
 
+namespace {
+
+/// A place that the projector's light reaches: the camera's pixel that sees it, where it lies along the picture, and
+/// how bright white is there (darker at the picture's rim).
+struct LitPlace {
+    std::size_t pixel;
+    float at;
+    double white_grey;
+};
+
+/// `across`: how many projector pixels the picture has the other way.
+std::vector<LitPlace> lit_places(const std::vector<std::vector<Sample>>& samples, const Light& light, bool along_rows,
+                                 int across) {
+    const Profile edge(std::vector<double>(static_cast<std::size_t>(across), 1.0), light.projector_blur_px);
+    std::vector<LitPlace> places;
+    for (const auto& sub : samples)
+        for (std::size_t i = 0; i < sub.size(); ++i)
+            if (const Sample& s = sub[i]; s.shade > 0)
+                places.push_back(
+                    {i, along_rows ? s.v : s.u, s.shade * light.white_grey * edge.at(along_rows ? s.u : s.v)});
+    return places;
+}
+
+}  // namespace
+
 std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const StripeSettings& stripes,
                                   unsigned seed) {
     std::vector<Shown> pictures;
@@ -217,9 +244,14 @@ std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const 
         for (const double dx : {-0.25, 0.25}) samples.push_back(samples_of(room, camera, dx, dy));
     std::mt19937 random(seed);
     std::normal_distribution<float> normal;
-    std::vector<float> noise(1 << 18);
+    constexpr std::size_t kNoises = 1 << 18;
+    std::vector<float> noise(kNoises);
     for (float& n : noise) n = normal(random);
     const Light& light = room.light;
+    std::vector<double> ambient(samples[0].size());  // of a pixel, of all its places
+    for (const auto& sub : samples)
+        for (std::size_t i = 0; i < sub.size(); ++i) ambient[i] += sub[i].albedo * light.ambient_grey;
+    std::array<std::vector<LitPlace>, 2> lit;  // for pictures that change along x, and along y
     std::vector<GrayImage> frames;
     for (const auto& [picture, along_rows] : pictures) {
         const int length = along_rows ? picture.height : picture.width;
@@ -227,28 +259,21 @@ std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const 
         for (int i = 0; i < length; ++i)
             values.push_back(std::pow((along_rows ? picture.at(0, i) : picture.at(i, 0))[1] / 255.0, light.gamma));
         const Profile profile(values, light.projector_blur_px);
-        const Profile edge(
-            std::vector<double>(static_cast<std::size_t>(along_rows ? picture.width : picture.height), 1.0),
-            light.projector_blur_px);
+        std::vector<LitPlace>& places = lit[along_rows ? 1 : 0];
+        if (places.empty())
+            places = lit_places(samples, light, along_rows, along_rows ? picture.width : picture.height);
+        std::vector<double> sum = ambient;
+        for (const LitPlace& place : places) sum[place.pixel] += place.white_grey * profile.at(place.at);
         cv::Mat seen(camera.height, camera.width, CV_32F);
         auto* pixel = seen.ptr<float>();
-        for (std::size_t i = 0; i < samples[0].size(); ++i) {
-            double sum = 0;
-            for (const auto& sub : samples) {
-                const Sample& s = sub[i];
-                sum += s.albedo * light.ambient_grey;
-                if (s.shade <= 0) continue;
-                const double lit = profile.at(along_rows ? s.v : s.u) * edge.at(along_rows ? s.u : s.v);
-                sum += s.shade * light.white_grey * lit;
-            }
-            pixel[i] = static_cast<float>(sum / static_cast<double>(samples.size()));
-        }
+        for (std::size_t i = 0; i < sum.size(); ++i)
+            pixel[i] = static_cast<float>(sum[i] / static_cast<double>(samples.size()));
         if (light.camera_blur_px > 0) cv::GaussianBlur(seen, seen, cv::Size(0, 0), light.camera_blur_px);
         GrayImage frame(camera.width, camera.height);
-        std::size_t at = random() % noise.size();
+        std::size_t at = random() % kNoises;
         for (std::size_t i = 0; i < frame.pixels.size(); ++i) {
-            at = (at + 1) % noise.size();
-            if (i % 977 == 0) at = random() % noise.size();
+            at = (at + 1) % kNoises;
+            if (i % 977 == 0) at = random() % kNoises;
             const float value = pixel[i] + static_cast<float>(light.noise_grey) * noise[at];
             frame.pixels[i] = static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
         }
