@@ -74,7 +74,9 @@ void take_pictures(StepPictures& pictures, OperatorWindow& window, const Operato
     if (follows(model) && !model.figures.delay_to_light_ms && !dark) return;  // the light is still being made
     const std::string taken = pictures.take(window, model);
     const auto light = taken.empty() ? nullptr : session.light().picture;
-    if (light) keep_or_warn(*light, pictures.folder() / ("light-" + taken));  // the name card
+    if (!light) return;
+    // Also of a session that does not answer: what it ordered last has expired.
+    keep_or_warn(dark ? RgbImage(light->width, light->height) : *light, pictures.folder() / ("light-" + taken));
 }
 
 /// A projector that is lost makes the session dark once; match and markers are kept.
