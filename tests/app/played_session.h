@@ -24,11 +24,16 @@ struct ExampleCase {
 };
 const ExampleCase& example_case();
 
-/// Looks at the session until it holds of its model. A session that does not come to it in five minutes has failed:
-/// this throws std::runtime_error with what was waited for, or what the session itself has thrown. Returns that model.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr std::chrono::minutes kPatience{60};  // such a session is twenty times as slow
+#else
+inline constexpr std::chrono::minutes kPatience{5};
+#endif
+
+/// Looks at the session until it holds of its model. A session that does not come to it in `kPatience` has failed: this throws std::runtime_error with what was waited for, or what the session itself has thrown. Returns that model.
 template <class Holds>
 OperatorModel wait_for(LiveSession& session, const char* what, Holds holds) {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+    const auto until = std::chrono::steady_clock::now() + kPatience;
     for (;;) {
         const OperatorModel model = session.model();
         if (holds(model)) return model;
