@@ -30,7 +30,8 @@ inline constexpr std::chrono::minutes kPatience{60};  // such a session is twent
 inline constexpr std::chrono::minutes kPatience{5};
 #endif
 
-/// Looks at the session until it holds of its model. A session that does not come to it in `kPatience` has failed: this throws std::runtime_error with what was waited for, or what the session itself has thrown. Returns that model.
+/// Looks at the session until it holds of its model. A session that does not come to it in `kPatience` has failed: this
+/// throws std::runtime_error with what was waited for, or what the session itself has thrown. Returns that model.
 template <class Holds>
 OperatorModel wait_for(LiveSession& session, const char* what, Holds holds) {
     const auto until = std::chrono::steady_clock::now() + kPatience;
