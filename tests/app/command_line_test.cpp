@@ -156,6 +156,9 @@ TEST_F(CommandLineTest, WhatAnOptionTakesIsSaidInWordsForPeople) {
     expect_refused(run("patterns --width"), 2, "--width takes one value, and not all were given.");
     expect_refused(run("patterns --width 64 --width 65 --out p"), 2, "--width takes one value, and 2 were given.");
     expect_refused(run("board --quiet --verbose"), 2, "cannot be given both.");
+    const CommandRun endless = run("patterns --out p --set " + std::string(100'000, 'a'));
+    expect_refused(endless, 2, "... Run `planlight patterns --help`.");
+    EXPECT_LT(endless.err.size(), 500U);
 }
 
 TEST_F(CommandLineTest, HelpThatCouldNotBePrintedIsNoSuccess) {
