@@ -23,9 +23,6 @@ struct MiddlePlane {
         mirror.translation() = 2 * (left.dot(centre_in_ct) + aside_mm) * left;
         return mirror;
     }
-    Eigen::Vector3d mirrored(const Eigen::Vector3d& p_in_ct) const {
-        return p_in_ct - 2 * left_of(p_in_ct) * left_in_ct();
-    }
 };
 
 }  // namespace planlight

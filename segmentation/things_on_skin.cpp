@@ -129,10 +129,10 @@ MiddlePlane middle_plane(const Distances& distances, const std::vector<Point>& p
     // Beyond `worst` it is enough to know that it is worse.
     const auto misfit = [&](const MiddlePlane& plane, double worst) -> double {
         const Eigen::Affine3d mirror = plane.mirror_in_ct();
-        const Eigen::Affine3d cell_from_ct = distances.cell_from_ct * mirror;
+        const Eigen::Affine3d cell_of_image = distances.cell_from_ct * mirror;
         double sum = 0, weight = 0;
         for (const Point& p : points) {
-            const double off_mm = distances.at_cell(cell_from_ct * p.at_in_ct, [&] { return mirror * p.at_in_ct; });
+            const double off_mm = distances.at_cell(cell_of_image * p.at_in_ct, [&] { return mirror * p.at_in_ct; });
             if (std::isnan(off_mm)) continue;
             sum += p.area_cm2 * std::pow(std::min(std::abs(off_mm), kOneSided_mm), 2);
             weight += p.area_cm2;
@@ -151,10 +151,11 @@ MiddlePlane middle_plane(const Distances& distances, const std::vector<Point>& p
 }
 
 double one_sided(const Distances& distances, const std::vector<Point>& points, const MiddlePlane& plane) {
+    const Eigen::Affine3d mirror = plane.mirror_in_ct();
     double cm2 = 0, mirrored = 0, all = 0;
     for (const Point& p : points) {
         all += p.area_cm2;
-        const double off_mm = distances(plane.mirrored(p.at_in_ct));
+        const double off_mm = distances(mirror * p.at_in_ct);
         if (std::isnan(off_mm)) continue;
         mirrored += p.area_cm2;
         if (off_mm > kOneSided_mm) cm2 += p.area_cm2;

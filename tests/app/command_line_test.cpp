@@ -148,8 +148,9 @@ TEST_F(CommandLineTest, TheHelpThatIsAdvisedIsThatOfTheCommand) {
 }
 
 TEST_F(CommandLineTest, WhatAnOptionTakesIsSaidInWordsForPeople) {
-    expect_refused(run("patterns --set faast --out p"), 2, "--set: \"faast\" is not ");
-    expect_refused(run("patterns --set faast --out p"), 2, "Is fast meant?");
+    const CommandRun mistyped = run("patterns --set faast --out p");
+    expect_refused(mistyped, 2, "--set: \"faast\" is not ");
+    expect_refused(mistyped, 2, "Is fast meant?");
     expect_refused(run("simulate --seed 99999999999999999999999 --out s"), 2, "is no number that it takes.");
     expect_refused(run("patterns --width many --out p"), 2, "--width: \"many\" is no number from 64 to 8192.");
     expect_refused(run("patterns --width 9 --out p"), 2, "--width: \"9\" is no number from 64 to 8192.");
@@ -170,8 +171,9 @@ TEST_F(CommandLineTest, HelpThatCouldNotBePrintedIsNoSuccess) {
 }
 
 TEST_F(CommandLineTest, ALanguageThatIsNotThereIsRefusedAlsoWhereNoWindowOpens) {
-    expect_refused(run("review case --json --language xx"), 3, "xx");
-    expect_refused(run("review case --json --language xx"), 3, "language");
+    const CommandRun unknown = run("review case --json --language xx");
+    expect_refused(unknown, 3, "xx");
+    expect_refused(unknown, 3, "language");
     expect_refused(run("review case --json --language de"), 3, "case");
 }
 
