@@ -39,9 +39,11 @@ public:
     static constexpr unsigned kGreys = 200;  ///< from 20 on; pictures of one grey lie 6 s apart at least
     void note(unsigned grey, Instant at) { at_ns_.at(grey) = at.count(); }
     Instant at(unsigned grey) const { return Instant(at_ns_.at(grey)); }
+    void note_seen(unsigned grey, Instant at) { seen_ns_.at(grey) = at.count(); }
+    bool was_seen(unsigned grey) const { return seen_ns_.at(grey) >= at_ns_.at(grey); }
 
 private:
-    std::array<std::atomic<Instant::rep>, 256> at_ns_{};
+    std::array<std::atomic<Instant::rep>, 256> at_ns_{}, seen_ns_{};
 };
 
 /// Looks all the time, before all that other programs compute where it may: one that waited for a processor would find
@@ -52,7 +54,7 @@ struct Watched {
     std::atomic<Instant::rep> dark_ns{0};  ///< when it was last found dark after light
 };
 
-void watch(const Monitor& monitor, const Handed& handed, Watched& watched, const std::stop_token& stop) {
+void watch(const Monitor& monitor, Handed& handed, Watched& watched, const std::stop_token& stop) {
     const test::ScreenPixel eye(monitor);
     const SteadyClock clock;
     request_realtime_priority();
@@ -68,6 +70,7 @@ void watch(const Monitor& monitor, const Handed& handed, Watched& watched, const
             ++watched.strange;
             continue;
         }
+        handed.note_seen(grey, looked);
         const Instant age = looked - handed.at(grey);
         watched.late += age > kWanted;
         watched.stale += age > kLongest;
@@ -98,6 +101,7 @@ void run(const Monitor& monitor, int rounds) {
     unsigned number = 0;
     for (int round = 0; round < rounds; ++round) {
         Instant last{};
+        unsigned last_grey = 0;
         const int pictures = few(random);
         for (int i = 0; i < pictures; ++i) {
             const unsigned grey = 20 + number++ % Handed::kGreys;
@@ -105,15 +109,16 @@ void run(const Monitor& monitor, int rounds) {
             const RgbImage picture(projector.width(), projector.height(), {g, g, g});
             last = clock.now();
             handed.note(grey, last);
+            last_grey = grey;
             projector.show(picture, last + validity);
             if (i + 1 < pictures)
                 std::this_thread::sleep_until(std::chrono::steady_clock::time_point(last + kPeriod) -
                                               std::chrono::milliseconds(early_ms(random)));
         }
-        unlit += !eye.lit();
         const bool dark = eye.until_dark(2s).has_value();
         // The watcher may be a moment behind.
         for (int i = 0; dark && i < 2000 && Instant(watched.dark_ns) <= last; ++i) std::this_thread::sleep_for(1ms);
+        unlit += !handed.was_seen(last_grey);  // asked of the watcher: this thread may wait for a processor too long
         if (dark && Instant(watched.dark_ns) > last)
             times.push_back(Instant(watched.dark_ns) - last);
         else
