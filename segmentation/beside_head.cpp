@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "segmentation/distance_transform.h"
 #include "segmentation/head_survey.h"
 #include "segmentation/outside_air.h"
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "segmentation/distance_transform.h"
+
 namespace planlight {
 
 using Eigen::Vector3d;

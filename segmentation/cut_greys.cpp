@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "segmentation/distance_transform.h"
 #include "segmentation/head_survey.h"
 
 namespace planlight {

@@ -5,6 +5,7 @@
 
 #include "planning_io/types/statistics.h"
 #include "segmentation/detach_objects.h"
+#include "segmentation/distance_transform.h"
 #include "segmentation/learn_levels.h"
 
 namespace planlight {

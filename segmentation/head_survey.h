@@ -38,7 +38,4 @@ HeadSurvey survey_of(const Volume& volume, const SurveySettings& settings = {});
 /// Each value the mean of its neighbourhood (weights 1 2 1 along each axis), of measured voxels only.
 std::vector<float> smoothed(const HeadSurvey& survey, const std::vector<float>& values);
 
-/// Distance of each voxel's centre from the nearest voxel where `mask` is `target`, mm; exact, at most `longest_mm`.
-std::vector<float> distance_from(const Mask& mask, std::uint8_t target, const VoxelGrid& grid, double longest_mm);
-
 }  // namespace planlight

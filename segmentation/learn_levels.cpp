@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "planning_io/types/statistics.h"
+#include "segmentation/distance_transform.h"
 
 namespace planlight {
 namespace {

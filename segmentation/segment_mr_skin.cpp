@@ -9,6 +9,7 @@
 #include "planning_io/types/error.h"
 #include "planning_io/types/statistics.h"
 #include "segmentation/blank_places.h"
+#include "segmentation/distance_transform.h"
 #include "segmentation/head_outline.h"
 #include "segmentation/outside_air.h"
 #include "segmentation/skin_threshold.h"

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "planning_io/types/statistics.h"
+#include "segmentation/distance_transform.h"
 #include "segmentation/head_survey.h"
 
 namespace planlight {

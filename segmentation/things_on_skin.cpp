@@ -9,6 +9,7 @@
 
 #include "planning_io/types/statistics.h"
 #include "segmentation/coarse_body.h"
+#include "segmentation/distance_transform.h"
 #include "segmentation/triangle_area.h"
 
 namespace planlight {

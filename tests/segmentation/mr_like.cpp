@@ -10,6 +10,7 @@
 #include <numbers>
 #include <random>
 
+#include "segmentation/distance_transform.h"
 #include "segmentation/head_survey.h"
 #include "segmentation/voxel_morphology.h"
 

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <utility>
 
+#include "segmentation/distance_transform.h"
 #include "segmentation/head_survey.h"
 
 namespace planlight::test {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "segmentation/head_survey.h"
+#include "segmentation/distance_transform.h"
 
 namespace planlight::test {
 namespace {
