@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "planning_io/files/nearest_word.h"
+#include "planning_io/types/utf8_prefix.h"
 
 namespace planlight {
 namespace {
@@ -81,11 +82,7 @@ std::string values(const std::string& count) {
 std::string sentence(std::string text) {
     if (const auto line = text.find('\n'); line != std::string::npos) text.resize(line);
     constexpr std::size_t kMost = 300;  // a value of a hundred thousand letters is not said whole, nor taken apart
-    if (text.size() > kMost) {
-        std::size_t end = kMost;
-        while (end > 0 && (text[end] & 0xC0) == 0x80) --end;  // no letter is cut
-        return text.substr(0, end) + "...";
-    }
+    if (text.size() > kMost) return std::string(utf8_prefix(text, kMost)) + "...";
     std::smatch is;
     if (std::regex_match(text, is, std::regex("Could not convert: (\\S+) = (.*)")))
         return fmt::format("{}: \"{}\" is no number that it takes.", is.str(1), is.str(2));

@@ -6,6 +6,7 @@
 
 #include "app/igtl/igtl_messages.h"
 #include "app/igtl/linked_shapes.h"
+#include "planning_io/types/utf8_prefix.h"
 
 namespace planlight {
 namespace {
@@ -27,12 +28,9 @@ MessageServerSettings server_settings(MessageServerSettings settings) {
 }
 
 /// No more than a line of it, and no half a character at its end.
-std::string shortened(std::string text) {
+std::string shortened(const std::string& text) {
     constexpr std::size_t kMost = 480;
-    if (text.size() <= kMost) return text;
-    std::size_t end = kMost;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-    return text.substr(0, end) + "…";
+    return text.size() <= kMost ? text : std::string(utf8_prefix(text, kMost)) + "…";
 }
 
 LinkedValues values_of_light_that_stays(LinkedValues values) {

@@ -13,6 +13,7 @@
 #include "app/windows/camera_picture.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/utf8_prefix.h"
 
 namespace planlight {
 namespace {
@@ -26,8 +27,7 @@ std::string short_text(const std::string& text, std::size_t most) {
     if (text.size() <= most) return text;
     std::size_t end = text.rfind(' ', most);
     if (end == std::string::npos || end < most / 2) end = most;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not within a letter of UTF-8
-    return text.substr(0, end) + " …";
+    return std::string(utf8_prefix(text, end)) + " …";
 }
 
 /// On one line of the table: names of a plan differ at their beginnings or at their ends.

@@ -15,6 +15,7 @@
 #include "planning_io/files/content_hash.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/utf8_prefix.h"
 
 namespace planlight::dicom_write {
 
@@ -53,9 +54,7 @@ std::string decimal_string(double value) {
 vtkDICOMValue name_value(std::string text) {
     for (char& c : text)
         if (c == '\\' || (c >= 0 && c < ' ')) c = c == '\\' ? '/' : ' ';
-    std::size_t end = std::min<std::size_t>(text.size(), 64);
-    while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-    return {vtkDICOMVR::LO, vtkDICOMCharacterSet(vtkDICOMCharacterSet::ISO_IR_192), text.substr(0, end)};
+    return {vtkDICOMVR::LO, vtkDICOMCharacterSet(vtkDICOMCharacterSet::ISO_IR_192), std::string(utf8_prefix(text, 64))};
 }
 
 vtkDICOMSequence sequence_of(const vtkDICOMItem& item) {

@@ -11,6 +11,7 @@
 #include "planning_io/files/header_text.h"
 #include "planning_io/files/one_line.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/utf8_prefix.h"
 
 namespace planlight {
 namespace {
@@ -187,11 +188,7 @@ bool ends_as_one_of(std::string_view name, std::initializer_list<std::string_vie
 }
 
 std::string quoted(std::string_view line, std::size_t most = 60) {
-    if (line.size() > most) {
-        while (most > 0 && (static_cast<unsigned char>(line[most]) & 0xC0) == 0x80) --most;  // within a letter
-        line = line.substr(0, most);
-    }
-    return on_one_line(std::string(line));
+    return on_one_line(std::string(utf8_prefix(line, most)));
 }
 
 }  // namespace
