@@ -48,9 +48,9 @@ Light light_of(const Stroke& stroke, const simulation::SimulatedRig& rig, const 
     render.brightness = 1;
     RgbImage image;
     Light light;
+    std::size_t elsewhere = 0;  // pixels of its light that meet no skin
     const RenderCounts counts =
         renderer.render_into(image, alone, picture.rig_from_ct, picture.rig_from_patient, render);
-    light.whole = counts.partly_lit.empty();
     light.all_lit = counts.lit == counts.points;
     const simulation::PanelSettings panel;  // of every simulated room but those that try others
     const Vector3d eye_in_ct =
@@ -60,13 +60,17 @@ Light light_of(const Stroke& stroke, const simulation::SimulatedRig& rig, const 
             const auto value = image.at(x, y)[1];
             if (value == 0) continue;
             const auto lit = rig.true_light({x, y}, picture.lit_at);
-            if (!lit) continue;
+            if (!lit) {
+                ++elsewhere;
+                continue;
+            }
             light.points_in_ct.push_back(lit->p_in_ct);
             light.normals_in_ct.push_back(lit->normal_in_ct);
             light.weights.push_back(std::pow(value / 255.0, panel.gamma));
             const double cosine = (eye_in_ct - lit->p_in_ct).normalized().dot(lit->normal_in_ct);
             light.incidences_deg.push_back(std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi);
         }
+    light.whole = counts.partly_lit.empty() && 9 * elsewhere <= light.weights.size();
     return light;
 }
 
@@ -112,7 +116,8 @@ struct WantedLine {
 
 /// `sideways_mm(p, normal)` and `place(p)`: how far beside the line, and where along it.
 template <class FootOf>
-void measure_line(const Light& light, StrokeKind kind, const FootOf& foot_of, OverlayErrors& errors) {
+void measure_line(const Light& light, StrokeKind kind, const std::string& item, const FootOf& foot_of,
+                  OverlayErrors& errors) {
     constexpr double kBin_mm = 2, kFullWeight = 2;
     struct Bin {
         double sideways = 0, incidence = 0, weight = 0;
@@ -128,7 +133,7 @@ void measure_line(const Light& light, StrokeKind kind, const FootOf& foot_of, Ov
     for (const auto& [place, bin] : bins) {
         if (bin.weight < kFullWeight) continue;
         errors.position_mm.push_back(std::abs(bin.sideways / bin.weight));
-        errors.places.push_back({kind, bin.incidence / bin.weight, errors.position_mm.back(), 0, true, {}});
+        errors.places.push_back({kind, bin.incidence / bin.weight, errors.position_mm.back(), 0, true, item});
     }
 }
 
@@ -285,12 +290,13 @@ OverlayErrors measure_overlay(const simulation::SimulatedRig& rig, const Plan& p
                 ticks.push_back(light);
             } else if (stroke.kind == StrokeKind::osteotomy_line && line) {
                 measure_line(
-                    light, stroke.kind, [&](auto& p, auto& n) { return line->foot_of(p, n); }, errors);
+                    light, stroke.kind, item.name, [&](auto& p, auto& n) { return line->foot_of(p, n); }, errors);
             } else if (stroke.kind == StrokeKind::cut_plane) {
                 const auto plane = named(plan.cut_planes, item.name);
                 if (plane == plan.cut_planes.end()) continue;
                 measure_line(
-                    light, stroke.kind, [&](auto& p, auto& n) { return beside_plane(*plane, p, n); }, errors);
+                    light, stroke.kind, item.name, [&](auto& p, auto& n) { return beside_plane(*plane, p, n); },
+                    errors);
             } else if (stroke.kind == StrokeKind::borehole) {
                 const auto hole = named(plan.boreholes, item.name);
                 if (hole == plan.boreholes.end()) continue;

@@ -26,8 +26,10 @@ struct OverlayErrors {
         double incidence_deg = 0;  ///< between the true skin's normal and the way back to the projector
         double position_mm = 0;
         double diameter_percent = 0;  ///< signed; 0 of lines, and of circles whose diameter is not planned
-        bool whole = true;            ///< false: a circle that the product itself draws as one lit in part
-        std::string item;             ///< of the plan; circles only
+        /// False: a circle that the product itself draws as one lit in part, or of whose light a tenth or more falls
+        /// on hair, cloth or nothing.
+        bool whole = true;
+        std::string item;  ///< of the plan
     };
     std::vector<Place> places;
     std::size_t unseen_strokes = 0;  ///< strokes of which no light fell on the patient (hidden, too steep)
