@@ -17,7 +17,7 @@
 #include "app/site_settings.h"
 #include "app/words/words.h"
 #include "planning_io/types/error.h"
-#include "projection/projector_process.h"
+#include "projection/monitor/projector_process.h"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include "app/json_text.h"
 #include "planning_io/case/room_file.h"
 #include "planning_io/types/error.h"
-#include "projection/projector_window.h"
+#include "projection/monitor/projector_window.h"
 #include "registration/devices/genicam_camera.h"
 
 namespace planlight {

@@ -1,8 +1,9 @@
-// Not for people: the projector window in a process of its own (projection/projector_process.h), started by `session`.
+// Not for people: the projector window in a process of its own (projection/monitor/projector_process.h), started by
+// `session`.
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/freed_memory.h"
-#include "projection/projector_process.h"
+#include "projection/monitor/projector_process.h"
 
 namespace planlight {
 

@@ -14,7 +14,7 @@
 #include "planning_io/case/case_folder.h"
 #include "planning_io/types/error.h"
 #include "projection/light_gate.h"
-#include "projection/projector_process.h"
+#include "projection/monitor/projector_process.h"
 
 namespace planlight {
 namespace {

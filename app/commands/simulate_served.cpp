@@ -9,7 +9,7 @@
 #include "planning_io/files/make_folder.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
-#include "projection/monitor_picture.h"
+#include "projection/monitor/monitor_picture.h"
 #include "registration/simulation/serve/head_under_light.h"
 #include "registration/simulation/serve/served_room.h"
 

@@ -4,8 +4,8 @@
 #include <fstream>
 
 #include "planning_io/types/error.h"
-#include "projection/opengl_driver.h"
-#include "projection/realtime_priority.h"
+#include "projection/monitor/opengl_driver.h"
+#include "projection/monitor/realtime_priority.h"
 
 namespace planlight {
 namespace fs = std::filesystem;

@@ -7,8 +7,8 @@
 
 #include "planning_io/case/light_file.h"
 #include "planning_io/types/rig_calibration.h"
-#include "projection/monitors_kept_on.h"
-#include "projection/projector_window.h"
+#include "projection/monitor/monitors_kept_on.h"
+#include "projection/monitor/projector_window.h"
 #include "registration/calibration/check_drift.h"
 
 // What the doctor says of a room, by figures alone: whoever measured them, each rule is a function of values.

@@ -8,7 +8,7 @@
 #include "app/console.h"
 #include "app/json_text.h"
 #include "planning_io/types/steady_clock.h"
-#include "projection/monitor_card.h"
+#include "projection/monitor/monitor_card.h"
 
 namespace planlight {
 namespace {}  // namespace

@@ -23,7 +23,7 @@
 #include "app/live/window_meter.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/types/error.h"
-#include "projection/projector_window.h"
+#include "projection/monitor/projector_window.h"
 
 namespace planlight {
 namespace {

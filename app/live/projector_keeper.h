@@ -8,9 +8,9 @@
 #include <thread>
 
 #include "planning_io/types/steady_clock.h"
-#include "projection/dark_cover.h"
-#include "projection/dark_watch.h"
-#include "projection/projector_process.h"
+#include "projection/monitor/dark_cover.h"
+#include "projection/monitor/dark_watch.h"
+#include "projection/monitor/projector_process.h"
 
 namespace planlight {
 

@@ -13,7 +13,7 @@
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
-#include "projection/projector_window.h"
+#include "projection/monitor/projector_window.h"
 
 namespace planlight {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "app/live/room_cameras.h"
-#include "projection/test_pictures.h"
+#include "projection/monitor/test_pictures.h"
 
 namespace planlight {
 

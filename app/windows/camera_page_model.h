@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "planning_io/types/image.h"
-#include "projection/test_pictures.h"
+#include "projection/monitor/test_pictures.h"
 
 namespace planlight {
 

@@ -14,9 +14,9 @@
 #include "app/windows/status_word.h"
 #include "app/windows/x11_window_state.h"
 #include "planning_io/types/error.h"
-#include "projection/glfw_session.h"
-#include "projection/monitors_kept_on.h"
-#include "projection/projector_window.h"
+#include "projection/monitor/glfw_session.h"
+#include "projection/monitor/monitors_kept_on.h"
+#include "projection/monitor/projector_window.h"
 
 namespace planlight {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
-#include "projection/monitor_card.h"
+#include "projection/monitor/monitor_card.h"
 #include "root_window.h"
 
 namespace {

@@ -15,9 +15,9 @@
 #include "desktop_picture.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
-#include "projection/projector_output.h"
-#include "projection/projector_window.h"
-#include "projection/x11_pointers.h"
+#include "projection/monitor/projector_output.h"
+#include "projection/monitor/projector_window.h"
+#include "projection/monitor/x11_pointers.h"
 #include "root_window.h"
 #include "screen_pixel.h"
 

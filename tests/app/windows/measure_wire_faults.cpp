@@ -18,7 +18,7 @@
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/statistics.h"
 #include "planning_io/volume/read_volume.h"
-#include "projection/monitor_picture.h"
+#include "projection/monitor/monitor_picture.h"
 #include "root_window.h"
 #include "screen_light.h"
 #include "served_room_test.h"

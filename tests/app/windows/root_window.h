@@ -3,7 +3,7 @@
 #include <string>
 
 #include "planning_io/types/image.h"
-#include "projection/projector_window.h"
+#include "projection/monitor/projector_window.h"
 
 namespace planlight::test {
 

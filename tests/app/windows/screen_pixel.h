@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "planning_io/types/time.h"
-#include "projection/projector_window.h"
+#include "projection/monitor/projector_window.h"
 
 namespace planlight::test {
 

@@ -24,7 +24,7 @@
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/statistics.h"
 #include "planning_io/volume/read_volume.h"
-#include "projection/monitor_picture.h"
+#include "projection/monitor/monitor_picture.h"
 #include "registration/simulation/serve/head_under_light.h"
 #include "root_window.h"
 #include "served_room_test.h"

@@ -17,7 +17,7 @@
 #include "keyboard_owner.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
-#include "projection/projector_window.h"
+#include "projection/monitor/projector_window.h"
 #include "projector_picture.h"
 #include "root_window.h"
 

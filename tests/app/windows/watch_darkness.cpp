@@ -21,8 +21,8 @@
 
 #include "desktop_picture.h"
 #include "planning_io/types/error.h"
-#include "projection/projector_process.h"
-#include "projection/projector_window.h"
+#include "projection/monitor/projector_process.h"
+#include "projection/monitor/projector_window.h"
 #include "root_window.h"
 #include "screen_pixel.h"
 

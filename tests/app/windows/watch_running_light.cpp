@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "planning_io/types/error.h"
+#include "projection/monitor/projector_process.h"
+#include "projection/monitor/realtime_priority.h"
 #include "projection/overlay_loop.h"
 #include "projection/picture_validity.h"
-#include "projection/projector_process.h"
-#include "projection/realtime_priority.h"
 #include "root_window.h"
 #include "screen_pixel.h"
 
