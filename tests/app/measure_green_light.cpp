@@ -299,13 +299,15 @@ int main(int argc, char** argv) {
         const test::CameraHabits habits = strange ? drawn_habits(settings, random) : test::CameraHabits();
         test::FaultyRoom room(volume, the_case, drawing, settings, 10ms, habits);
         if (list)
-            fmt::print("room {}: {} items, {} markers ({} in sight), lamps {:.2f}, wet {:.1f}{}{}; {}\n", first + k,
+            fmt::print("room {}: {} items, {} markers ({} in sight), lamps {:.2f}, wet {:.1f}{}{}; {}{}{}\n", first + k,
                        the_case.plan.size(), room.rig().true_markers_in_ct().size(), markers_in_sight(room.rig()),
                        settings.ambient, settings.wet,
                        settings.things.drape_hole     ? ", under a drape with a hole"
                        : settings.things.drape_behind ? ", a drape behind"
                                                       : "",
-                       settings.things.hair ? ", hair" : "", text_of(habits));
+                       settings.things.hair ? ", hair" : "", text_of(habits),
+                       settings.light.jitter > Instant::zero() ? "; pictures at odd moments" : "",
+                       settings.light.whole_exposure ? "; seen over all of an exposure" : "");
         if (markers_in_sight(room.rig()) < SessionSettings().min_reference_markers) {
             ++unfit;
             continue;
