@@ -26,7 +26,7 @@ struct OverlayErrors {
         double incidence_deg = 0;  ///< between the true skin's normal and the way back to the projector
         double position_mm = 0;
         double diameter_percent = 0;  ///< signed; 0 of lines, and of circles whose diameter is not planned
-        /// False: a circle that the product itself draws as one lit in part, or of whose light a tenth or more falls
+        /// False: a circle that the product itself draws as one lit in part, or of whose light more than a tenth falls
         /// on hair, cloth or nothing.
         bool whole = true;
         std::string item;  ///< of the plan

@@ -11,7 +11,6 @@
 #include "projection/monitor/monitor_card.h"
 
 namespace planlight {
-namespace {}  // namespace
 
 int identify_monitors(const ProjectorOptions& options) {
     const std::vector<Monitor> monitors = list_monitors();

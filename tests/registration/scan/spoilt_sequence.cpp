@@ -32,6 +32,14 @@ Sequence sequence_of(const stripe_room::Room& room, const StripeSettings& stripe
     return {stripes, stripe_sequence(stripes), photograph(room, room.left, stripes, 1)};
 }
 
+Sequence sequence_of(stripe_room::Surface surface, double ambient_grey, double white_grey) {
+    stripe_room::Room room = stripe_room::paper_room(std::move(surface));
+    room.light.noise_grey = 0;
+    room.light.ambient_grey = ambient_grey;
+    room.light.white_grey = white_grey;
+    return sequence_of(room, stripe_room::stripes_of(room));
+}
+
 Sequence gray_code_of(const stripe_room::Room& room, double cell_px, bool inverse) {
     Sequence gray{
         stripe_room::stripes_of(room), {{Kind::white, false, 0, "white"}, {Kind::black, false, 0, "black"}}, {}};

@@ -21,6 +21,9 @@ struct Sequence {
 /// The left camera's frames of the whole sequence of `stripes`.
 Sequence sequence_of(const stripe_room::Room& room, const StripeSettings& stripes);
 
+/// In the paper's room, of a surface that gets so much light of lamps and of the projector.
+Sequence sequence_of(stripe_room::Surface surface, double ambient_grey, double white_grey = 190);
+
 /// Of a Gray code without fringes whose cells are `cell_px` projector pixels.
 Sequence gray_code_of(const stripe_room::Room& room, double cell_px, bool inverse);
 
